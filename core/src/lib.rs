@@ -1,0 +1,8 @@
+#![no_std]
+//! nekton
+#[cfg(feature = "alloc")]
+extern crate alloc;
+pub mod scalar;
+pub mod scene;
+pub mod status;
+pub(crate) mod workspace;

@@ -1,0 +1,281 @@
+//! The description of a scene, as the caller gives it: plain data borrowed from anywhere.
+//!
+//! Units are SI per unit depth: lengths m, density kg/m³ (so mass kg/m, inertia kg·m), circulation m²/s,
+//! torque N, force N/m, energy J/m. Angles are radians, counter-clockwise.
+
+use crate::scalar::Real;
+
+/// Everything that describes a scene. Absent ingredients (no gravity, no repulsion, no circulation, no
+/// walls, fluid density 0) cost neither time nor memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a, R> {
+    /// Density of the fluid, ≥ 0; 0 means bodies in vacuum.
+    pub fluid_density: R,
+    /// Gravitational acceleration along −y.
+    pub gravity: R,
+    /// Short-range repulsion of boundaries; `None` is off.
+    pub repulsion: Option<Repulsion<R>>,
+    /// How circulation enters the motion (only if some circulation is not 0).
+    pub circulation: CirculationModel,
+    /// The tank: the fluid is inside this outline.
+    pub tank: Option<Wall<'a, R>>,
+    /// Fixed obstacles: the fluid is outside these outlines.
+    pub obstacles: &'a [Wall<'a, R>],
+    /// The moving bodies.
+    pub bodies: &'a [Body<'a, R>],
+    /// Formula of the Christoffel force.
+    pub force: ForceFormula,
+    /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
+    pub shortcuts: bool,
+}
+
+/// V = ε Σ ∬ |x − x'|^(−α) ds ds' over pairs of boundaries of which at least one moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repulsion<R> {
+    /// Exponent α > 0.
+    pub alpha: R,
+    /// Strength ε ≥ 0.
+    pub epsilon: R,
+}
+
+/// Model of the force of circulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum CirculationModel {
+    /// Energy gradient and the gyroscopic (Kutta–Joukowski) force.
+    #[default]
+    Full,
+    /// The paper's (3.4): without the force linear in the velocities.
+    Paper,
+}
+
+/// Formula of the Christoffel force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum ForceFormula {
+    /// Exact gradient of the discrete added mass: conserves the discrete energy at any resolution.
+    #[default]
+    ExactGradient,
+    /// The boundary integral (2.15), as an independent cross-check. Not available with a prescribed joint
+    /// or root.
+    Boundary,
+}
+
+/// A fixed boundary.
+#[derive(Clone, Copy, Debug)]
+pub struct Wall<'a, R> {
+    /// Outline.
+    pub shape: Shape<'a, R>,
+    /// Where the outline's own origin lies.
+    pub position: [R; 2],
+    /// Turn about the outline's own origin.
+    pub angle: R,
+    /// Nodes, even, ≥ 8.
+    pub nodes: usize,
+    /// Circulation around an obstacle (must be 0 for the tank).
+    pub circulation: R,
+}
+
+/// A body: a tree of links, of which the first is the root.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<'a, R> {
+    /// (x, y, θ): centre of mass and heading of the first link.
+    pub pose: [R; 3],
+    /// (ẋ, ẏ, θ̇) of the first link.
+    pub velocity: [R; 3],
+    /// Free, or moved as prescribed.
+    pub root: Root<'a, R>,
+    /// Links; the first has no joint, every other one a parent before it.
+    pub links: &'a [Link<'a, R>],
+}
+
+/// How the first link of a body moves.
+#[derive(Clone, Copy, Debug)]
+pub enum Root<'a, R> {
+    /// By the laws of motion.
+    Free,
+    /// x(t), y(t), θ(t) are given, added to the body's `pose`; `velocity` is ignored.
+    Prescribed([Signal<'a, R>; 3]),
+}
+
+/// One rigid part of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Link<'a, R> {
+    /// Outline, drawn in the link's own frame (any origin).
+    pub shape: Shape<'a, R>,
+    /// Mass properties.
+    pub mass: Mass<R>,
+    /// Nodes, even, ≥ 8.
+    pub nodes: usize,
+    /// Circulation of the fluid around the link, counter-clockwise.
+    pub circulation: R,
+    /// How it hangs on its parent (`None` for the first link).
+    pub joint: Option<Joint<'a, R>>,
+}
+
+/// Mass properties of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mass<R> {
+    /// Homogeneous, of this density (≥ 0).
+    Density(R),
+    /// Given mass, moment of inertia about the centre of mass, and that centre measured from the
+    /// outline's area centroid, in the link's frame.
+    Given {
+        /// kg/m, ≥ 0.
+        mass: R,
+        /// kg·m, ≥ 0.
+        inertia: R,
+        /// Centre of mass minus centroid.
+        centre_of_mass: [R; 2],
+    },
+}
+
+/// A joint between a link and its parent. Anchors are measured from the area centroids, in the links' own frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Joint<'a, R> {
+    /// Index of the parent within the body (smaller than the link's own).
+    pub parent: usize,
+    /// Hinge or slider.
+    pub kind: JointKind<R>,
+    /// Anchor on the parent.
+    pub parent_anchor: [R; 2],
+    /// Anchor on the link itself.
+    pub self_anchor: [R; 2],
+    /// What moves the joint.
+    pub drive: Drive<'a, R>,
+}
+
+/// Degree of freedom of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointKind<R> {
+    /// The anchors coincide; u = heading of the link minus heading of the parent.
+    Hinge,
+    /// The link's anchor slides along an axis of the parent; u = distance along it.
+    Slider {
+        /// Direction in the parent's frame (need not be of unit length; it is normalized).
+        axis: [R; 2],
+        /// Constant heading of the link minus that of the parent.
+        angle: R,
+    },
+}
+
+/// What moves a joint.
+#[derive(Clone, Copy, Debug)]
+pub enum Drive<'a, R> {
+    /// Held at this value.
+    Locked(R),
+    /// u(t) is prescribed.
+    Motion(Signal<'a, R>),
+    /// The joint moves by the torque ν(t) − stiffness (u − rest) − damping u̇ (Theorem 7.1).
+    Torque {
+        /// Applied torque (a force for a slider).
+        torque: Signal<'a, R>,
+        /// Spring constant, ≥ 0.
+        stiffness: R,
+        /// Damping constant, ≥ 0.
+        damping: R,
+        /// Position of the unloaded spring.
+        rest: R,
+        /// u and u̇ at the start.
+        start: [R; 2],
+    },
+}
+
+/// A scalar function of time, with two derivatives.
+#[derive(Clone, Copy, Debug)]
+pub enum Signal<'a, R> {
+    /// Constant.
+    Constant(R),
+    /// Σ offset + amplitude sin(frequency t + phase), times a window if there is one.
+    Harmonic {
+        /// Terms of the sum.
+        terms: &'a [Harmonic<R>],
+        /// Smooth window of compact support.
+        window: Option<Window<R>>,
+    },
+    /// Rows (t, u, u̇, ü) at increasing times, quintic in between, constant outside.
+    Table(&'a [[R; 4]]),
+    /// Set by the caller while running (`Sim::set_channel`); 0 until then.
+    Channel,
+}
+
+/// One harmonic term: offset + amplitude sin(frequency t + phase).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonic<R> {
+    /// Amplitude.
+    pub amplitude: R,
+    /// Angular frequency, rad/s.
+    pub frequency: R,
+    /// Phase, rad.
+    pub phase: R,
+    /// Constant part.
+    pub offset: R,
+}
+
+/// 0 outside (from, to), 1 between from + ramp and to − ramp, infinitely smooth in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window<R> {
+    /// Start of the support.
+    pub from: R,
+    /// End of the support.
+    pub to: R,
+    /// Length of each ramp, > 0, at most half the support.
+    pub ramp: R,
+}
+
+/// An outline.
+#[derive(Clone, Copy, Debug)]
+pub enum Shape<'a, R> {
+    /// Semi-axes along x and y.
+    Ellipse {
+        /// Along x.
+        a: R,
+        /// Along y.
+        b: R,
+    },
+    /// r(t) = radius (1 + amplitude cos(lobes t)).
+    Star {
+        /// Mean radius.
+        radius: R,
+        /// Relative amplitude, |amplitude| < 1.
+        amplitude: R,
+        /// Number of lobes.
+        lobes: usize,
+    },
+    /// Rectangle about the origin with rounded corners.
+    Rectangle {
+        /// Along x.
+        width: R,
+        /// Along y.
+        height: R,
+        /// Corner radius; `None`: the documented default of a "sharp" corner.
+        radius: Option<R>,
+    },
+    /// Simple polygon with rounded corners.
+    Polygon {
+        /// Corners.
+        vertices: &'a [[R; 2]],
+        /// Corner radius; `None`: the documented default of a "sharp" corner.
+        radius: Option<R>,
+    },
+    /// Smooth closed curve through given points.
+    Curve {
+        /// Points in order (the last joins the first).
+        points: &'a [[R; 2]],
+    },
+}
+
+impl<R: Real> Scene<'_, R> {
+    /// Fluid of density 1, nothing else.
+    pub const fn new(fluid_density: R, gravity: R) -> Self {
+        Scene {
+            fluid_density,
+            gravity,
+            repulsion: None,
+            circulation: CirculationModel::Full,
+            tank: None,
+            obstacles: &[],
+            bodies: &[],
+            force: ForceFormula::ExactGradient,
+            shortcuts: true,
+        }
+    }
+}
