@@ -6,3 +6,5 @@ pub mod scalar;
 pub mod scene;
 pub mod status;
 pub(crate) mod workspace;
+pub mod lu;
+pub mod se2;
