@@ -13,6 +13,7 @@ use crate::status::{Error, Result, Status};
 
 pub mod abm4;
 pub mod adams;
+mod control;
 mod formula;
 pub mod rk4;
 #[cfg(test)]
