@@ -2,6 +2,7 @@
 //! nekton
 #[cfg(feature = "alloc")]
 extern crate alloc;
+pub mod integrate;
 pub mod scalar;
 pub mod scene;
 pub mod status;
