@@ -58,7 +58,12 @@ pub(crate) fn put_three<R: Real>(rates: &mut [R], i: usize, linear: Complex<R>, 
 }
 
 /// World offsets of the two anchors of a link from their links' centres, and the world axis of a slider.
-fn arms<R: Real>(link: &LinkRecord<R>, s: &[R], parent: &Pose<R>, own: &Pose<R>) -> (Complex<R>, Complex<R>, Complex<R>) {
+fn arms<R: Real>(
+    link: &LinkRecord<R>,
+    s: &[R],
+    parent: &Pose<R>,
+    own: &Pose<R>,
+) -> (Complex<R>, Complex<R>, Complex<R>) {
     match link.hold {
         Hold::Root => Default::default(),
         Hold::Hinge { parent: h, own: o } => (parent.turned(h), own.turned(o), Complex::default()),
@@ -88,7 +93,15 @@ pub(crate) fn velocities<R: Real>(model: &Model<'_, R>, s: &[R], ds: &[R], q: &[
 }
 
 /// Accelerations of the links for coordinate accelerations `dds` at rates `ds` (link velocities `qd`).
-pub(crate) fn accelerations<R: Real>(model: &Model<'_, R>, s: &[R], ds: &[R], dds: &[R], q: &[R], qd: &[R], out: &mut [R]) {
+pub(crate) fn accelerations<R: Real>(
+    model: &Model<'_, R>,
+    s: &[R],
+    ds: &[R],
+    dds: &[R],
+    q: &[R],
+    qd: &[R],
+    out: &mut [R],
+) {
     for (i, link) in model.links.iter().enumerate() {
         let c = link.coordinate;
         if let Hold::Root = link.hold {
@@ -137,7 +150,14 @@ pub(crate) fn project<R: Real>(model: &Model<'_, R>, s: &[R], q: &[R], f: &mut [
 }
 
 /// Velocities of the links for a unit rate of one coordinate. `unit` is scratch of one real per coordinate.
-pub(crate) fn jacobian_column<R: Real>(model: &Model<'_, R>, coordinate: usize, s: &[R], q: &[R], unit: &mut [R], out: &mut [R]) {
+pub(crate) fn jacobian_column<R: Real>(
+    model: &Model<'_, R>,
+    coordinate: usize,
+    s: &[R],
+    q: &[R],
+    unit: &mut [R],
+    out: &mut [R],
+) {
     for (i, x) in unit.iter_mut().enumerate() {
         *x = if i == coordinate { R::one() } else { R::zero() };
     }
@@ -146,7 +166,14 @@ pub(crate) fn jacobian_column<R: Real>(model: &Model<'_, R>, coordinate: usize, 
 
 /// Coordinates, rates and (for prescribed ones) accelerations at time `t`. `p`, `dp` hold the free ones.
 pub(crate) fn set_coordinates<R: Real>(
-    model: &Model<'_, R>, t: R, p: &[R], dp: &[R], channels: &[R], s: &mut [R], ds: &mut [R], dds: &mut [R],
+    model: &Model<'_, R>,
+    t: R,
+    p: &[R],
+    dp: &[R],
+    channels: &[R],
+    s: &mut [R],
+    ds: &mut [R],
+    dds: &mut [R],
 ) {
     let slots = s.iter_mut().zip(ds.iter_mut()).zip(dds.iter_mut());
     for (c, ((s, ds), dds)) in model.coordinates.iter().zip(slots) {

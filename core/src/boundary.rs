@@ -160,7 +160,11 @@ pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R
 }
 
 /// Calls `entry(i, k, Im W_ik, Re W_ik)` for the self block. O(N²); the cotangents of Re W cost a sine each.
-pub(crate) fn self_weights<R: Real>(record: &BoundaryRecord<R>, store: &[R], mut entry: impl FnMut(usize, usize, R, R)) -> Result<()> {
+pub(crate) fn self_weights<R: Real>(
+    record: &BoundaryRecord<R>,
+    store: &[R],
+    mut entry: impl FnMut(usize, usize, R, R),
+) -> Result<()> {
     let n = record.nodes;
     let nodes = record.nodes(store);
     let h = nodes.step;
@@ -186,7 +190,12 @@ pub(crate) fn self_weights<R: Real>(record: &BoundaryRecord<R>, store: &[R], mut
 /// χ₃: the function harmonic inside the outline with the normal derivative of the rotation about the frame's
 /// origin. Closed form for an ellipse; otherwise one interior solve, (I − Im W/π + 1/N) χ = −Re W/π |X|²/2, in
 /// `scratch` (N² + N reals). O(N³) once.
-pub(crate) fn rotation_potential<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &mut [R], scratch: &mut [R]) -> Result<()> {
+pub(crate) fn rotation_potential<R: Real>(
+    record: &BoundaryRecord<R>,
+    shape: &Shape<'_, R>,
+    store: &mut [R],
+    scratch: &mut [R],
+) -> Result<()> {
     let n = record.nodes;
     let chi_at = record.data_at + 5 * n;
     if let Shape::Ellipse { a, b } = *shape {
@@ -227,7 +236,12 @@ pub(crate) fn rotation_potential<R: Real>(record: &BoundaryRecord<R>, shape: &Sh
 }
 
 /// Fills the self block of A = I − Im G (column-major, N × N) and, if asked for, of Re G.
-pub(crate) fn fill_self_block<R: Real>(record: &BoundaryRecord<R>, store: &[R], block: &mut [R], regular: &mut [R]) -> Result<()> {
+pub(crate) fn fill_self_block<R: Real>(
+    record: &BoundaryRecord<R>,
+    store: &[R],
+    block: &mut [R],
+    regular: &mut [R],
+) -> Result<()> {
     let n = record.nodes;
     let factor = record.sign / R::PI;
     self_weights(record, store, |i, k, im, re| {

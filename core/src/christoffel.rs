@@ -32,14 +32,17 @@ pub(crate) struct Induced<'a, R> {
     pub nodes: Nodes<'a, R>,
     pub hx: &'a [R],
     pub hy: &'a [R],
-    pub zx: &'a [R],
-    pub zy: &'a [R],
 }
 
 /// Visits every ordered pair of different boundaries of which one moves, with h = D_ij w_j at the target's nodes.
 /// `w` is complex (an empty imaginary part is 0). 20 flops per pair of nodes.
 pub(crate) fn each_induced<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, wx: &[R], wy: &[R], s: &mut PairScratch<'_, R>, mut visit: impl FnMut(Induced<'_, R>),
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    wx: &[R],
+    wy: &[R],
+    s: &mut PairScratch<'_, R>,
+    mut visit: impl FnMut(Induced<'_, R>),
 ) {
     for (j, source, source_nodes) in model.each_boundary() {
         for (i, target, nodes) in model.each_boundary() {
@@ -56,7 +59,7 @@ pub(crate) fn each_induced<R: Real>(
             hy.fill(R::zero());
             let (wx, wy) = (part(wx, source.first, source.nodes), part(wy, source.first, source.nodes));
             induced_velocity(source, &source_nodes, wx, wy, zx, zy, hx, hy);
-            visit(Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy, zx, zy });
+            visit(Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy });
         }
     }
 }
@@ -72,7 +75,10 @@ pub(crate) fn boundary_twist<R: Real>(model: &Model<'_, R>, rates: &[R], boundar
 
 /// Rate of change of the target's nodes in the source's frame, node by node.
 pub(crate) fn relative_rates<'a, R: Real>(
-    pair: &Induced<'a, R>, model: &Model<'_, R>, poses: Poses<'_, R>, rates: &[R],
+    pair: &Induced<'a, R>,
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    rates: &[R],
 ) -> impl Iterator<Item = Complex<R>> + 'a {
     let (p, q) = (poses.get(pair.target), poses.get(pair.source));
     let (vi, vj) = (boundary_twist(model, rates, pair.target), boundary_twist(model, rates, pair.source));
@@ -88,7 +94,12 @@ pub(crate) fn relative_rates<'a, R: Real>(
 /// Adds scale · Im Σ f (1, i, i·arm) to the gradient by the target's pose, and subtracts it (with the arm from the
 /// source) from the source's; f = weight · h, turned to world directions.
 pub(crate) fn add_pose_gradient<R: Real>(
-    pair: &Induced<'_, R>, model: &Model<'_, R>, poses: Poses<'_, R>, weight: &[R], scale: R, gradient: &mut [R],
+    pair: &Induced<'_, R>,
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    weight: &[R],
+    scale: R,
+    gradient: &mut [R],
 ) {
     let (p, q) = (poses.get(pair.target), poses.get(pair.source));
     let shift = p.origin - q.origin;
@@ -120,7 +131,13 @@ pub(crate) fn add_three<R: Real>(model: &Model<'_, R>, boundary: usize, linear: 
 /// The pass: `rate = Im(ż ∘ D u)` and `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames, per unit
 /// density. O(N²).
 pub(crate) fn pair_pass<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], density: &[R], adjoint: &[R], s: &mut PairScratch<'_, R>, rate: &mut [R],
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    qd: &[R],
+    density: &[R],
+    adjoint: &[R],
+    s: &mut PairScratch<'_, R>,
+    rate: &mut [R],
     gradient: &mut [R],
 ) {
     rate.fill(R::zero());
@@ -138,7 +155,12 @@ pub(crate) fn pair_pass<R: Real>(
 /// The other half of the force's first term: `out = Dᵀ`-pass of the adjoint density, so that T₂ = −2 Xᵀ A⁻ᵀ out.
 /// Its difference from T₁ measures the resolution. O(N²).
 pub(crate) fn transposed_pass<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], adjoint: &[R], s: &mut PairScratch<'_, R>, out: &mut [R],
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    qd: &[R],
+    adjoint: &[R],
+    s: &mut PairScratch<'_, R>,
+    out: &mut [R],
 ) {
     out.fill(R::zero());
     for (j, source, source_nodes) in model.each_boundary() {
@@ -152,7 +174,7 @@ pub(crate) fn transposed_pass<R: Real>(
                 (*x, *y) = (z.re, z.im);
             }
             let (fx, fy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
-            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[], zx, zy };
+            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
             let rates = relative_rates(&pair, model, poses, qd);
             let weights = part(adjoint, target.first, n);
             for (((fx, fy), zd), w) in fx.iter_mut().zip(fy.iter_mut()).zip(rates).zip(weights) {
@@ -210,7 +232,12 @@ pub(crate) fn periodic_derivative<R: Real>(f: &[R], k: usize) -> R {
 ///
 /// `potential` is ψ of the motion; `v` the links' velocities in their frames; `work` scratch of length N. O(N²).
 pub(crate) fn boundary_formula<R: Real>(
-    model: &Model<'_, R>, potential: &[R], v: &[R], kernel: &mut [R], work: &mut [R], out: &mut [R],
+    model: &Model<'_, R>,
+    potential: &[R],
+    v: &[R],
+    kernel: &mut [R],
+    work: &mut [R],
+    out: &mut [R],
 ) {
     kernel.fill(R::zero());
     for (_, b, nodes) in model.each_boundary() {
@@ -233,7 +260,8 @@ pub(crate) fn boundary_formula<R: Real>(
             let second = complex(periodic_derivative(nodes.dx, k), periodic_derivative(nodes.dy, k));
             let curvature = dot(perp(d), second) / (speed * speed * speed);
             let arm = dot(x, normal);
-            let s = curvature * (xi * xi - zeta * zeta) + R::TWO * xi * twist.angular - arm * twist.angular * twist.angular;
+            let s =
+                curvature * (xi * xi - zeta * zeta) + R::TWO * xi * twist.angular - arm * twist.angular * twist.angular;
             if let Some(g) = kernel.get_mut(k) {
                 *g = s * speed * nodes.step;
             }

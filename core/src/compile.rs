@@ -80,7 +80,11 @@ fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Item<'a, 
 }
 
 fn each_link<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = (usize, usize, &'a Link<'a, R>)> + Clone {
-    scene.bodies.iter().enumerate().flat_map(|(b, body)| body.links.iter().enumerate().map(move |(l, link)| (b, l, link)))
+    scene
+        .bodies
+        .iter()
+        .enumerate()
+        .flat_map(|(b, body)| body.links.iter().enumerate().map(move |(l, link)| (b, l, link)))
 }
 
 fn motions<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Signal<'a, R>> + Clone {
@@ -137,7 +141,11 @@ fn lay_out<R: Real>(scene: &Scene<'_, R>, traits: &Traits, mut slot: impl FnMut(
     let general = fluid && traits.formulation != Formulation::Kirchhoff;
     for (i, item) in items(scene).enumerate() {
         let same = |j: &(usize, Item<'_, R>)| {
-            j.1.link.is_some() && item.link.is_some() && j.1.shape == item.shape && j.1.nodes == item.nodes && j.1.centre == item.centre
+            j.1.link.is_some()
+                && item.link.is_some()
+                && j.1.shape == item.shape
+                && j.1.nodes == item.nodes
+                && j.1.centre == item.centre
         };
         let mut s = Slots { first: layout.unknowns, ..Slots::default() };
         s.shared = items(scene).enumerate().take(i).find(same).map(|(j, _)| j);
@@ -198,7 +206,8 @@ impl Traits {
         let lone = scene.shortcuts && scene.bodies.len() == 1 && scene.tank.is_none() && scene.obstacles.is_empty();
         let free_root = scene.bodies.iter().all(|b| matches!(b.root, Root::Free));
         let links = each_link(scene).count();
-        let given_joints = each_link(scene).all(|(_, _, l)| l.joint.is_none_or(|j| !matches!(j.drive, Drive::Torque { .. })));
+        let given_joints =
+            each_link(scene).all(|(_, _, l)| l.joint.is_none_or(|j| !matches!(j.drive, Drive::Torque { .. })));
         let formulation = if lone && free_root && links == 1 && fluid {
             Formulation::Kirchhoff
         } else if lone && free_root && links > 1 && given_joints && scene.gravity == R::zero() && !circulation {
@@ -257,7 +266,8 @@ impl<'a, R: Real> Model<'a, R> {
         build_boundaries(scene, &traits, memory.boundaries, store, scratch)?;
         build_links(scene, memory.links, memory.boundaries, store)?;
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
-        let mut head = head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
+        let mut head =
+            head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
         if traits.fluid {
             let walls = memory.boundaries.get(..head.plan.walls).unwrap_or(&[]);
             crate::nystrom::fill_walls(walls, &head, traits.circulation, store);
@@ -265,14 +275,18 @@ impl<'a, R: Real> Model<'a, R> {
         if traits.formulation == Formulation::Kirchhoff
             && let Some(boundary) = memory.boundaries.first()
         {
-            (head.lone_added_mass, head.lone_impulse) = crate::lone::constants(boundary, store, scratch, traits.circulation)?;
+            (head.lone_added_mass, head.lone_impulse) =
+                crate::lone::constants(boundary, store, scratch, traits.circulation)?;
         }
         Ok(head)
     }
 
     /// The view of a model in memory that [`Model::init`] filled.
     pub fn view(
-        head: &'a ModelHead<R>, links: &'a [LinkRecord<R>], coordinates: &'a [CoordinateRecord<R>], boundaries: &'a [BoundaryRecord<R>],
+        head: &'a ModelHead<R>,
+        links: &'a [LinkRecord<R>],
+        coordinates: &'a [CoordinateRecord<R>],
+        boundaries: &'a [BoundaryRecord<R>],
         store: &'a [R],
     ) -> Self {
         Model { head, links, coordinates, boundaries, store }
@@ -384,12 +398,20 @@ fn validate_link<R: Real>(scene: &Scene<'_, R>, l: usize, link: &Link<'_, R>) ->
 }
 
 fn build_boundaries<R: Real>(
-    scene: &Scene<'_, R>, traits: &Traits, boundaries: &mut [BoundaryRecord<R>], store: &mut [R], scratch: &mut [R],
+    scene: &Scene<'_, R>,
+    traits: &Traits,
+    boundaries: &mut [BoundaryRecord<R>],
+    store: &mut [R],
+    scratch: &mut [R],
 ) -> Result<()> {
     for (i, item) in items(scene).enumerate() {
         let here = |e: Error| e.at(item.place);
         let shared = items(scene).enumerate().take(i).find(|(_, j)| {
-            j.link.is_some() && item.link.is_some() && j.shape == item.shape && j.nodes == item.nodes && j.centre == item.centre
+            j.link.is_some()
+                && item.link.is_some()
+                && j.shape == item.shape
+                && j.nodes == item.nodes
+                && j.centre == item.centre
         });
         let twin = shared.and_then(|(j, _)| boundaries.get(j).copied());
         let Some(record) = boundaries.get_mut(i) else { return Err(Status::Internal.into()) };
@@ -466,12 +488,18 @@ fn core_of<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &[R
     Core { centre: best.1, axes: [R::zero(); 2] }
 }
 
-fn build_links<R: Real>(scene: &Scene<'_, R>, links: &mut [LinkRecord<R>], boundaries: &[BoundaryRecord<R>], store: &[R]) -> Result<()> {
+fn build_links<R: Real>(
+    scene: &Scene<'_, R>,
+    links: &mut [LinkRecord<R>],
+    boundaries: &[BoundaryRecord<R>],
+    store: &[R],
+) -> Result<()> {
     let walls = scene.obstacles.len() + usize::from(scene.tank.is_some());
     let (mut coordinate, mut root) = (0, 0);
     for (i, (b, l, link)) in each_link(scene).enumerate() {
         let Some(boundary) = boundaries.get(walls + i) else { return Err(Status::Internal.into()) };
-        let area = boundary.outline.view(crate::workspace::part(store, boundary.store_at, boundary.store_len)).properties()?;
+        let area =
+            boundary.outline.view(crate::workspace::part(store, boundary.store_at, boundary.store_len)).properties()?;
         let centroid = area.centroid - boundary.origin;
         let (mass, inertia) = match link.mass {
             Mass::Density(d) => (d * area.area, d * area.polar_moment),
@@ -483,7 +511,17 @@ fn build_links<R: Real>(scene: &Scene<'_, R>, links: &mut [LinkRecord<R>], bound
         let parent = link.joint.map_or(i, |j| root + j.parent);
         let parent_centroid = links.get(parent).map_or(Complex::default(), |p| p.centroid);
         let hold = link.joint.map_or(Hold::Root, |j| hold(&j, parent_centroid, centroid));
-        let record = LinkRecord { place: (b, l), parent, coordinate, hold, mass, inertia, area: area.area, perimeter: area.perimeter, centroid };
+        let record = LinkRecord {
+            place: (b, l),
+            parent,
+            coordinate,
+            hold,
+            mass,
+            inertia,
+            area: area.area,
+            perimeter: area.perimeter,
+            centroid,
+        };
         if let Some(slot) = links.get_mut(i) {
             *slot = record;
         }
@@ -506,7 +544,10 @@ fn hold<R: Real>(joint: &Joint<'_, R>, parent_centroid: Complex<R>, centroid: Co
 }
 
 fn build_coordinates<R: Real>(
-    scene: &Scene<'_, R>, coordinates: &mut [CoordinateRecord<R>], store: &mut [R], signals_at: usize,
+    scene: &Scene<'_, R>,
+    coordinates: &mut [CoordinateRecord<R>],
+    store: &mut [R],
+    signals_at: usize,
 ) -> Result<usize> {
     let (mut at, mut channels, mut free, mut link) = (signals_at, 0, 0, 0);
     let mut slots = coordinates.iter_mut();
@@ -549,9 +590,10 @@ fn build_coordinates<R: Real>(
             match joint.drive {
                 Drive::Locked(value) => push(given, Some(Signal::Constant(value))),
                 Drive::Motion(signal) => push(given, Some(signal)),
-                Drive::Torque { torque, stiffness, damping, rest, start } => {
-                    push(CoordinateRecord { control: Control::Torque, stiffness, damping, rest, start, ..joint_of }, Some(torque))
-                }
+                Drive::Torque { torque, stiffness, damping, rest, start } => push(
+                    CoordinateRecord { control: Control::Torque, stiffness, damping, rest, start, ..joint_of },
+                    Some(torque),
+                ),
             }
             .map_err(|e| e.at(Place::Link(b, l)))?;
         }
@@ -561,7 +603,11 @@ fn build_coordinates<R: Real>(
 }
 
 fn head<R: Real>(
-    scene: &Scene<'_, R>, traits: &Traits, layout: &Layout, coordinates: &[CoordinateRecord<R>], channels: usize,
+    scene: &Scene<'_, R>,
+    traits: &Traits,
+    layout: &Layout,
+    coordinates: &[CoordinateRecord<R>],
+    channels: usize,
 ) -> ModelHead<R> {
     let free = coordinates.iter().filter(|c| c.control != Control::Prescribed).count();
     let prescribed_moves = coordinates.iter().any(|c| c.control == Control::Prescribed && !c.constant);
@@ -608,6 +654,7 @@ fn head<R: Real>(
         lone_impulse: [R::zero(); 3],
         plan,
     };
-    head.plan.sim_bytes = crate::sim::SimRequirement::of(&head, coordinates.len()).map_or(usize::MAX, |r| r.reals.saturating_mul(size_of::<R>()));
+    head.plan.sim_bytes = crate::sim::SimRequirement::of(&head, coordinates.len())
+        .map_or(usize::MAX, |r| r.reals.saturating_mul(size_of::<R>()));
     head
 }

@@ -62,7 +62,8 @@ fn closest_nodes<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> (R, usize, us
             let (dx, dy) = (*x - z.re, *y - z.im);
             dx * dx + dy * dy
         };
-        let row = b.nodes.x.iter().zip(b.nodes.y).map(|(x, y)| distance(x, y)).fold(R::MAX, |m, d| if d < m { d } else { m });
+        let row =
+            b.nodes.x.iter().zip(b.nodes.y).map(|(x, y)| distance(x, y)).fold(R::MAX, |m, d| if d < m { d } else { m });
         if row < best.0 {
             let k = b.nodes.x.iter().zip(b.nodes.y).position(|(x, y)| distance(x, y) <= row).unwrap_or(0);
             best = (row, i, k);
@@ -111,14 +112,19 @@ pub(crate) fn signed_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &
 }
 
 /// Which pairs are looked at: at least one moves.
-fn pairs<'a, R: Real>(model: &Model<'a, R>, poses: Poses<'a, R>) -> impl Iterator<Item = (usize, usize, Placed<'a, R>, Placed<'a, R>)> {
+fn pairs<'a, R: Real>(
+    model: &Model<'a, R>,
+    poses: Poses<'a, R>,
+) -> impl Iterator<Item = (usize, usize, Placed<'a, R>, Placed<'a, R>)> {
     let model = *model;
     model.each_boundary().flat_map(move |(i, a, a_nodes)| {
-        model.each_boundary().skip(i + 1).filter(move |(_, b, _)| a.link.is_some() || b.link.is_some()).map(move |(j, b, b_nodes)| {
-            let a = Placed { record: a, nodes: a_nodes, pose: poses.get(i) };
-            let b = Placed { record: b, nodes: b_nodes, pose: poses.get(j) };
-            (i, j, a, b)
-        })
+        model.each_boundary().skip(i + 1).filter(move |(_, b, _)| a.link.is_some() || b.link.is_some()).map(
+            move |(j, b, b_nodes)| {
+                let a = Placed { record: a, nodes: a_nodes, pose: poses.get(i) };
+                let b = Placed { record: b, nodes: b_nodes, pose: poses.get(j) };
+                (i, j, a, b)
+            },
+        )
     })
 }
 
@@ -188,7 +194,11 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
         for (j, b) in all().filter(|(j, b)| *j > i && b.record.link.is_none()) {
             let inside_first = a.record.sign > R::zero();
             if signed_gap(&a, &b, model.store) <= R::zero() {
-                return Some(if inside_first { (model.place(j), model.place(i)) } else { (model.place(i), model.place(j)) });
+                return Some(if inside_first {
+                    (model.place(j), model.place(i))
+                } else {
+                    (model.place(i), model.place(j))
+                });
             }
         }
     }
@@ -197,7 +207,11 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
 
 /// Whether a pair could have passed through each other while the placements went from `from` to `to`:
 /// conservative advancement along the straight path, each advance no longer than the present gap allows.
-pub(crate) fn swept_contact<'a, R: Real>(model: &Model<'a, R>, from: Poses<'a, R>, to: Poses<'a, R>) -> Option<(Place, Place)> {
+pub(crate) fn swept_contact<'a, R: Real>(
+    model: &Model<'a, R>,
+    from: Poses<'a, R>,
+    to: Poses<'a, R>,
+) -> Option<(Place, Place)> {
     for (i, j, a, b) in pairs(model, from) {
         let (a1, b1) = (to.get(i), to.get(j));
         let travel = |p: Pose<R>, q: Pose<R>, reach: R| cabs(q.origin - p.origin) + cabs(q.turn - p.turn) * reach;
@@ -239,4 +253,3 @@ pub(crate) fn swept_contact<'a, R: Real>(model: &Model<'a, R>, from: Poses<'a, R
     }
     None
 }
-

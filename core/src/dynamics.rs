@@ -7,7 +7,9 @@
 //! The fluid's part of M w is formed from both halves of the symmetrized discrete added mass, so the discrete
 //! energy balance is exact at any resolution.
 
-use crate::articulation::{accelerations, jacobian_column, place_links, project, put_three, set_coordinates, twist_of, velocities};
+use crate::articulation::{
+    accelerations, jacobian_column, place_links, project, put_three, set_coordinates, twist_of, velocities,
+};
 use crate::christoffel::{PairScratch, add_frame_terms, boundary_formula, pair_pass, without_turning};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::lu::{Factors, factor};
@@ -170,7 +172,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// Jacobian columns of the free coordinates and, if prescribed coordinates move, the motion they alone make.
-    fn fill_jacobian(&mut self, model: &Model<'_, R>) {
+    pub(crate) fn fill_jacobian(&mut self, model: &Model<'_, R>) {
         let rows = 3 * model.links.len();
         let unit = &mut *self.generalized;
         for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
@@ -186,7 +188,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// Solves the boundary system for the columns and forms their momenta (world directions, with density), M_h C.
-    fn solve_fluid(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
+    pub(crate) fn solve_fluid(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
         let rows = 3 * model.links.len();
         let density = model.head.fluid_density;
         self.momenta.fill(R::zero());
@@ -223,7 +225,8 @@ impl<R: Real> Work<'_, R> {
             let column = part(self.jacobian, k * rows, rows);
             for j in 0..=k {
                 let other = part(self.jacobian, j * rows, rows);
-                let fluid = inner(other, part(self.momenta, k * rows, rows)) + inner(column, part(self.momenta, j * rows, rows));
+                let fluid = inner(other, part(self.momenta, k * rows, rows))
+                    + inner(column, part(self.momenta, j * rows, rows));
                 let mut sum = fluid * R::HALF;
                 for (i, l) in model.links.iter().enumerate() {
                     let (a, b) = (twist_of(column, i), twist_of(other, i));
@@ -244,7 +247,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// The density of the motion itself, its adjoint, and its momentum (symmetrized, world directions, with density).
-    fn solve_motion(&mut self, model: &Model<'_, R>) {
+    pub(crate) fn solve_motion(&mut self, model: &Model<'_, R>) {
         let rows = 3 * model.links.len();
         if model.head.plan.formulation == Formulation::Kirchhoff {
             lone_momentum(model, Poses(self.poses), self.qd, self.momentum);
@@ -275,7 +278,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// One pass over the pairs: rate and gradient of the motion (exact-gradient formula).
-    fn pass(&mut self, model: &Model<'_, R>) {
+    pub(crate) fn pass(&mut self, model: &Model<'_, R>) {
         self.gradient.fill(R::zero());
         if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
             let poses = Poses(self.poses);
@@ -297,7 +300,8 @@ impl<R: Real> Work<'_, R> {
         if !model.head.plan.fluid {
             return;
         }
-        let exact = model.head.force == ForceFormula::ExactGradient || model.head.plan.formulation == Formulation::Kirchhoff;
+        let exact =
+            model.head.force == ForceFormula::ExactGradient || model.head.plan.formulation == Formulation::Kirchhoff;
         let base: &[R] = match w {
             Inertia::Drift => self.drift,
             Inertia::Accelerations => self.qdd,
@@ -386,7 +390,17 @@ impl<R: Real> Work<'_, R> {
         }
         if head.gyroscopic {
             circulation::add_gyroscopic_force(
-                model, poses, &system, &mut flow, &mut scratch, self.qd, self.v, self.adjoint, self.spare, density, self.force,
+                model,
+                poses,
+                &system,
+                &mut flow,
+                &mut scratch,
+                self.qd,
+                self.v,
+                self.adjoint,
+                self.spare,
+                density,
+                self.force,
             );
         }
     }
@@ -401,7 +415,15 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// Accelerations at (t, p, ṗ). Everything that diagnostics need is left in the buffers.
-    pub(crate) fn evaluate(&mut self, model: &Model<'_, R>, impulse: &[R; 3], t: R, p: &[R], dp: &[R], counters: &mut Counters) -> Result<()> {
+    pub(crate) fn evaluate(
+        &mut self,
+        model: &Model<'_, R>,
+        impulse: &[R; 3],
+        t: R,
+        p: &[R],
+        dp: &[R],
+        counters: &mut Counters,
+    ) -> Result<()> {
         counters.evaluations += 1;
         self.place(model, t, p, dp)?;
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
@@ -433,7 +455,9 @@ impl<R: Real> Work<'_, R> {
         add_body_inertia(model, self.drift, self.force);
         project(model, self.s, self.q, self.force, self.generalized);
         let rhs_at = n * n;
-        for (c, g) in model.coordinates.iter().zip(self.generalized.iter()).filter(|(c, _)| c.control != Control::Prescribed) {
+        for (c, g) in
+            model.coordinates.iter().zip(self.generalized.iter()).filter(|(c, _)| c.control != Control::Prescribed)
+        {
             let half = inner(part(self.momenta, c.free * rows, rows), self.inertial_of(model)) * R::HALF;
             put(self.reduced, rhs_at + c.free, -*g - half);
         }
@@ -464,6 +488,13 @@ impl<R: Real> Work<'_, R> {
         project(model, self.s, self.q, self.force, self.generalized);
     }
 
+    /// Christoffel force plus fluid inertia of the accelerations in `qdd`, into `force`.
+    pub(crate) fn force_of_accelerations(&mut self, model: &Model<'_, R>) {
+        self.solve_motion(model);
+        self.pass(model);
+        self.fluid_force(model, Inertia::Accelerations, true);
+    }
+
     /// Power of all drives: Σ ν ṡ over prescribed and torque-driven coordinates.
     pub(crate) fn power(&mut self, model: &Model<'_, R>, t: R) -> R {
         let given = model.coordinates.iter().any(|c| c.control == Control::Prescribed && !c.constant);
@@ -474,7 +505,9 @@ impl<R: Real> Work<'_, R> {
         for (i, c) in model.coordinates.iter().enumerate() {
             power += match c.control {
                 Control::Free => R::zero(),
-                Control::Torque => joint_torque(model, i, t, self.channels, at(self.s, i), at(self.ds, i)) * at(self.ds, i),
+                Control::Torque => {
+                    joint_torque(model, i, t, self.channels, at(self.s, i), at(self.ds, i)) * at(self.ds, i)
+                }
                 Control::Prescribed if given => at(self.generalized, i) * at(self.ds, i),
                 Control::Prescribed => R::zero(),
             };
@@ -491,7 +524,8 @@ impl<R: Real> Work<'_, R> {
             let mut sum = value;
             if model.head.prescribed_moves {
                 let (column, shape) = (part(self.jacobian, k * rows, rows), part(self.jacobian, n * rows, rows));
-                let (momentum, shape_momentum) = (part(self.momenta, k * rows, rows), part(self.momenta, n * rows, rows));
+                let (momentum, shape_momentum) =
+                    (part(self.momenta, k * rows, rows), part(self.momenta, n * rows, rows));
                 sum -= (inner(column, shape_momentum) + inner(shape, momentum)) * R::HALF;
                 for (i, link) in model.links.iter().enumerate() {
                     let (a, b) = (twist_of(column, i), twist_of(shape, i));
@@ -536,13 +570,18 @@ fn lone_momentum<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, v: &[R], ou
     let v = twist_of(v, 0);
     let b = turn.unturned(v.linear);
     let m = &model.head.lone_added_mass;
-    let row = |r: usize| m.get(r).zip(m.get(r + 3)).zip(m.get(r + 6)).map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular);
+    let row = |r: usize| {
+        m.get(r)
+            .zip(m.get(r + 3))
+            .zip(m.get(r + 6))
+            .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
+    };
     let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * model.head.fluid_density;
     put_three(out, 0, linear, row(2) * model.head.fluid_density);
 }
 
 /// −G q̇ of a lone body: its circulation impulse turns with it.
-fn add_lone_circulation<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], force: &mut [R]) {
+pub(crate) fn add_lone_circulation<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], force: &mut [R]) {
     let Some((body, _)) = model.boundary(0) else { return };
     let [px, py, _] = model.head.lone_impulse;
     let p = poses.get(0).turned(crate::scalar::complex(px, py));

@@ -31,3 +31,13 @@ pub(crate) mod signal;
 pub mod sim;
 pub mod status;
 pub(crate) mod workspace;
+
+pub use compile::{ModelMemory, ModelRequirement};
+pub use diagnostics::{Counters, Energy, Gap, Resolution};
+pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
+#[cfg(feature = "alloc")]
+pub use owned::{ModelBuf, SimBuf};
+pub use plan::Plan;
+pub use scalar::Real;
+pub use sim::{Method, Sim, SimHead, SimRequirement};
+pub use status::{Error, Place, Result, Status};

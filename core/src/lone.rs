@@ -10,12 +10,18 @@ use crate::workspace::{at, put, take};
 /// Reals of scratch for `n` nodes.
 pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {
     let blocks = if circulation { 2 } else { 1 };
-    n.checked_mul(n).and_then(|b| b.checked_mul(blocks)).and_then(|b| b.checked_add(5 * n)).ok_or(Status::SizeOverflow.into())
+    n.checked_mul(n)
+        .and_then(|b| b.checked_mul(blocks))
+        .and_then(|b| b.checked_add(5 * n))
+        .ok_or(Status::SizeOverflow.into())
 }
 
 /// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame.
 pub(crate) fn constants<R: Real>(
-    body: &BoundaryRecord<R>, store: &[R], scratch: &mut [R], circulation: bool,
+    body: &BoundaryRecord<R>,
+    store: &[R],
+    scratch: &mut [R],
+    circulation: bool,
 ) -> Result<([R; 9], [R; 3])> {
     let n = body.nodes;
     let nodes = body.nodes(store);

@@ -64,7 +64,14 @@ pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Re
 }
 
 /// Left-looking elimination of `width` columns from row `k` on. Returns smallest and largest pivot size.
-fn factor_panel<R: Real>(panel: &mut [R], ld: usize, n: usize, k: usize, width: usize, pivots: &mut [R]) -> Result<(R, R)> {
+fn factor_panel<R: Real>(
+    panel: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    width: usize,
+    pivots: &mut [R],
+) -> Result<(R, R)> {
     let (mut smallest, mut largest) = (R::MAX, R::zero());
     for c in 0..width {
         let Some((done, rest)) = panel.split_at_mut_checked(c * ld) else {
@@ -118,7 +125,14 @@ fn row_of<R: Real>(pivot: R) -> usize {
 
 /// Applies a panel's exchanges to one column and solves with the panel's unit triangle; returns the multipliers.
 #[inline]
-fn eliminate_panel<R: Real>(panel: &[R], ld: usize, k: usize, width: usize, swaps: &[R], column: &mut [R]) -> [R; PANEL] {
+fn eliminate_panel<R: Real>(
+    panel: &[R],
+    ld: usize,
+    k: usize,
+    width: usize,
+    swaps: &[R],
+    column: &mut [R],
+) -> [R; PANEL] {
     for (p, row) in swaps.iter().enumerate() {
         exchange(column, k + p, row_of(*row));
     }
@@ -145,7 +159,15 @@ fn eight<R>(panel: &[R], ld: usize, from: usize, to: usize) -> [&[R]; PANEL] {
 
 /// `column[from..to] -= panel[from..to] x`.
 #[inline]
-fn subtract_columns<R: Real>(panel: &[R], ld: usize, from: usize, to: usize, width: usize, x: &[R; PANEL], column: &mut [R]) {
+fn subtract_columns<R: Real>(
+    panel: &[R],
+    ld: usize,
+    from: usize,
+    to: usize,
+    width: usize,
+    x: &[R; PANEL],
+    column: &mut [R],
+) {
     let target = part_mut(column, from, to - from);
     let l = eight(panel, ld, from, to);
     if width < PANEL {
@@ -165,7 +187,15 @@ fn subtract_columns<R: Real>(panel: &[R], ld: usize, from: usize, to: usize, wid
 /// The same for two columns at once: each entry of the panel is read once.
 #[inline]
 fn update_two<R: Real>(
-    panel: &[R], ld: usize, n: usize, from: usize, width: usize, x: &[R; PANEL], y: &[R; PANEL], first: &mut [R], second: &mut [R],
+    panel: &[R],
+    ld: usize,
+    n: usize,
+    from: usize,
+    width: usize,
+    x: &[R; PANEL],
+    y: &[R; PANEL],
+    first: &mut [R],
+    second: &mut [R],
 ) {
     if width < PANEL {
         subtract_columns(panel, ld, from, n, width, x, first);

@@ -222,7 +222,9 @@ impl<'a, R: Real> Model<'a, R> {
         self.boundaries.get(i).map(|b| (b, b.nodes(self.store)))
     }
     /// Every boundary with its nodes, in the order of the unknowns.
-    pub(crate) fn each_boundary(&self) -> impl Iterator<Item = (usize, &'a BoundaryRecord<R>, Nodes<'a, R>)> + Clone + use<'a, R> {
+    pub(crate) fn each_boundary(
+        &self,
+    ) -> impl Iterator<Item = (usize, &'a BoundaryRecord<R>, Nodes<'a, R>)> + Clone + use<'a, R> {
         let store = self.store;
         self.boundaries.iter().enumerate().map(move |(i, b)| (i, b, b.nodes(store)))
     }

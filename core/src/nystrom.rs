@@ -34,14 +34,23 @@ pub(crate) fn put_pose<R: Real>(poses: &mut [R], boundary: usize, pose: &Pose<R>
 /// Nodes of one boundary in another's frame: z = conj(turn_j)(r_i − r_j + turn_i X). Differences of origins are
 /// taken first, so a scene far from the world's origin loses no digits.
 #[inline]
-pub(crate) fn targets<'a, R: Real>(nodes: &'a Nodes<'a, R>, pose: Pose<R>, source: Pose<R>) -> impl Iterator<Item = Complex<R>> + 'a {
+pub(crate) fn targets<'a, R: Real>(
+    nodes: &'a Nodes<'a, R>,
+    pose: Pose<R>,
+    source: Pose<R>,
+) -> impl Iterator<Item = Complex<R>> + 'a {
     let turn = source.unturned(pose.turn);
     let shift = source.unturned(pose.origin - source.origin);
     nodes.points().map(move |x| shift + turn * x)
 }
 
 /// Fills the constant block of the walls (and of Re G) in the store.
-pub(crate) fn fill_walls<R: Real>(walls: &[BoundaryRecord<R>], head: &ModelHead<R>, circulation: bool, store: &mut [R]) {
+pub(crate) fn fill_walls<R: Real>(
+    walls: &[BoundaryRecord<R>],
+    head: &ModelHead<R>,
+    circulation: bool,
+    store: &mut [R],
+) {
     let n = head.wall_nodes;
     let Some((data, blocks)) = store.split_at_mut_checked(head.walls_at) else { return };
     let Some((block, rest)) = blocks.split_at_mut_checked(n * n) else { return };
@@ -51,7 +60,8 @@ pub(crate) fn fill_walls<R: Real>(walls: &[BoundaryRecord<R>], head: &ModelHead<
         let sources = source.nodes(data);
         for target in walls {
             if target.first == source.first {
-                let completion = if source.sign > R::zero() { R::one() / R::count(source.nodes.max(1)) } else { R::zero() };
+                let completion =
+                    if source.sign > R::zero() { R::one() / R::count(source.nodes.max(1)) } else { R::zero() };
                 // The outline was checked when its nodes were made: the weights exist.
                 let _ = self_weights(source, data, |i, k, im, re| {
                     let at = (source.first + k) * n + source.first + i;
@@ -75,12 +85,20 @@ pub(crate) fn fill_walls<R: Real>(walls: &[BoundaryRecord<R>], head: &ModelHead<
 /// Assembles A (leading dimension `ld`) and, if `regular` is not empty, Re G (leading dimension N).
 /// `zx`, `zy` are scratch of length N. O(N²).
 pub(crate) fn assemble<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, matrix: &mut [R], ld: usize, regular: &mut [R], zx: &mut [R], zy: &mut [R],
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    matrix: &mut [R],
+    ld: usize,
+    regular: &mut [R],
+    zx: &mut [R],
+    zy: &mut [R],
 ) {
     let (n, walls) = (zx.len(), model.head.wall_nodes);
     let with_regular = !regular.is_empty();
     for (j, source, nodes) in model.each_boundary() {
-        for (i, target, points) in model.each_boundary().filter(|(i, t, _)| *i != j && (t.link.is_some() || source.link.is_some())) {
+        for (i, target, points) in
+            model.each_boundary().filter(|(i, t, _)| *i != j && (t.link.is_some() || source.link.is_some()))
+        {
             let x = part_mut(zx, target.first, target.nodes).iter_mut().zip(part_mut(zy, target.first, target.nodes));
             for ((x, y), z) in x.zip(targets(&points, poses.get(i), poses.get(j))) {
                 (*x, *y) = (z.re, z.im);
@@ -129,7 +147,14 @@ fn kernel_column<R: Real>(zx: &[R], zy: &[R], g: Complex<R>, weight: Complex<R>,
 /// Complex velocity that a density `w` (real and imaginary part; an empty imaginary part is 0) on boundary j
 /// induces at the targets: Σ_k D_ik w_k, D = (sign_j/π) h Γ'_k/(Γ_k − z_i)². Adds to `hx`, `hy`. One division per pair.
 pub(crate) fn induced_velocity<R: Real>(
-    source: &BoundaryRecord<R>, nodes: &Nodes<'_, R>, wx: &[R], wy: &[R], zx: &[R], zy: &[R], hx: &mut [R], hy: &mut [R],
+    source: &BoundaryRecord<R>,
+    nodes: &Nodes<'_, R>,
+    wx: &[R],
+    wy: &[R],
+    zx: &[R],
+    zy: &[R],
+    hx: &mut [R],
+    hy: &mut [R],
 ) {
     let factor = nodes.step * source.sign / R::PI;
     for (k, ((g, dg), wx)) in nodes.points().zip(nodes.tangents()).zip(wx).enumerate() {
@@ -147,7 +172,13 @@ pub(crate) fn induced_velocity<R: Real>(
 
 /// `out_k += Im Σ_i f_i D_ik` for complex `f` on the targets: the transpose of [`induced_velocity`].
 pub(crate) fn transposed_velocity<R: Real>(
-    source: &BoundaryRecord<R>, nodes: &Nodes<'_, R>, fx: &[R], fy: &[R], zx: &[R], zy: &[R], out: &mut [R],
+    source: &BoundaryRecord<R>,
+    nodes: &Nodes<'_, R>,
+    fx: &[R],
+    fy: &[R],
+    zx: &[R],
+    zy: &[R],
+    out: &mut [R],
 ) {
     let factor = nodes.step * source.sign / R::PI;
     for (k, (g, dg)) in nodes.points().zip(nodes.tangents()).enumerate() {

@@ -31,15 +31,21 @@ pub(crate) fn to_world<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, scale
 }
 
 fn potential<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
-    nodes.x.iter().zip(nodes.y).zip(nodes.chi).map(move |((x, y), chi)| v.linear.re * *x + v.linear.im * *y + v.angular * *chi)
+    nodes
+        .x
+        .iter()
+        .zip(nodes.y)
+        .zip(nodes.chi)
+        .map(move |((x, y), chi)| v.linear.re * *x + v.linear.im * *y + v.angular * *chi)
 }
 
 /// Normal velocity times ds of a rigid motion given in the boundary's frame.
 fn flux<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
     let h = nodes.step;
-    nodes.points().zip(nodes.tangents()).map(move |(x, d)| {
-        h * (v.linear.im * d.re - v.linear.re * d.im + v.angular * dot(x, d))
-    })
+    nodes
+        .points()
+        .zip(nodes.tangents())
+        .map(move |(x, d)| h * (v.linear.im * d.re - v.linear.re * d.im + v.angular * dot(x, d)))
 }
 
 /// `out += scale · X v` on the links' nodes (v in link frames).
@@ -114,7 +120,14 @@ impl<R: Real> BoundarySystem<'_, R> {
 
     /// Assembles, sets the first right-hand sides to −2 X v for the link-frame motions in `motions` (columns of
     /// three reals per link), factorizes and solves. O(N³).
-    pub(crate) fn solve(&mut self, model: &Model<'_, R>, poses: Poses<'_, R>, motions: &[R], zx: &mut [R], zy: &mut [R]) -> Result<()> {
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model<'_, R>,
+        poses: Poses<'_, R>,
+        motions: &[R],
+        zx: &mut [R],
+        zy: &mut [R],
+    ) -> Result<()> {
         assemble(model, poses, self.matrix, self.ld, self.regular, zx, zy);
         let rows = 3 * model.links.len();
         let columns = motions.chunks_exact(rows.max(1)).len();

@@ -6,7 +6,7 @@ use crate::status::{Error, Result, Status};
 use crate::workspace::part;
 
 /// A signal compiled into a model: numbers live in the model's store.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct SignalRecord<R> {
     kind: Kind<R>,
     at: usize,
@@ -21,9 +21,9 @@ enum Kind<R> {
     Channel,
 }
 
-impl<R: Real> Default for Kind<R> {
+impl<R: Default> Default for SignalRecord<R> {
     fn default() -> Self {
-        Kind::Constant(R::zero())
+        SignalRecord { kind: Kind::Constant(R::default()), at: 0, len: 0 }
     }
 }
 
@@ -54,7 +54,8 @@ impl<R: Real> Signal<'_, R> {
 
     /// Checks the numbers and copies them to the front of `store`, which begins at `at` in the model's store.
     pub(crate) fn compile(&self, store: &mut [R], at: usize, channel: usize) -> Result<SignalRecord<R>> {
-        let finite = |what, x: R| if x.is_finite() { Ok(()) } else { Err(Error::new(Status::NotFinite).of(what, x.to_f64())) };
+        let finite =
+            |what, x: R| if x.is_finite() { Ok(()) } else { Err(Error::new(Status::NotFinite).of(what, x.to_f64())) };
         let kind = match self {
             Signal::Constant(c) => {
                 finite("value", *c)?;
@@ -73,7 +74,9 @@ impl<R: Real> Signal<'_, R> {
                 if let Some(w) = window {
                     finite("from", w.from)?;
                     finite("to", w.to)?;
-                    if !(w.ramp > R::zero() && w.ramp + w.ramp <= (w.to - w.from) * (R::one() + R::lit(8.0) * R::EPSILON)) {
+                    if !(w.ramp > R::zero()
+                        && w.ramp + w.ramp <= (w.to - w.from) * (R::one() + R::lit(8.0) * R::EPSILON))
+                    {
                         return Err(Error::new(Status::OutOfRange).of("ramp", w.ramp.to_f64()));
                     }
                 }
@@ -96,7 +99,9 @@ impl<R: Real> Signal<'_, R> {
                 }
                 Kind::Table
             }
-            Signal::Channel => return Ok(SignalRecord { kind: Kind::Channel, at: channel * CHANNEL_LEN, len: CHANNEL_LEN }),
+            Signal::Channel => {
+                return Ok(SignalRecord { kind: Kind::Channel, at: channel * CHANNEL_LEN, len: CHANNEL_LEN });
+            }
         };
         Ok(SignalRecord { kind, at, len: self.store_len() })
     }
@@ -230,7 +235,11 @@ mod tests {
         let times = [-1.0, 0.4, 1.0, 1.7, 2.5, 3.3, 4.2, 4.9, 6.0];
         derivatives_agree(Signal::Harmonic { terms: &terms, window: None }, &times, 1e-7);
         derivatives_agree(Signal::Harmonic { terms: &terms, window }, &times, 1e-6);
-        derivatives_agree(Signal::Table(&[[0.0, 1.0, 0.5, -0.2], [1.0, 2.0, 0.0, 0.4], [3.0, -1.0, 0.2, 0.0]]), &[0.3, 0.8, 1.2, 2.6], 1e-6);
+        derivatives_agree(
+            Signal::Table(&[[0.0, 1.0, 0.5, -0.2], [1.0, 2.0, 0.0, 0.4], [3.0, -1.0, 0.2, 0.0]]),
+            &[0.3, 0.8, 1.2, 2.6],
+            1e-6,
+        );
     }
 
     #[test]

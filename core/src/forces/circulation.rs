@@ -9,7 +9,9 @@
 
 use crate::articulation::{put_three, twist_of};
 use crate::boundary::{BoundaryRecord, Core, Nodes};
-use crate::christoffel::{Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates};
+use crate::christoffel::{
+    Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates,
+};
 use crate::model::Model;
 use crate::nystrom::{Poses, targets};
 use crate::potentials::{BoundarySystem, flux_moments, to_world};
@@ -62,7 +64,12 @@ fn cores<'a, R: Real>(model: &Model<'a, R>) -> impl Iterator<Item = (usize, &'a 
 }
 
 /// Sets up the circulatory flow: Ψ, dn, β, φ. One solve.
-pub(crate) fn solve<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) {
+pub(crate) fn solve<R: Real>(
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    system: &BoundarySystem<'_, R>,
+    flow: &mut Flow<'_, R>,
+) {
     flow.stream.fill(R::zero());
     flow.normal.fill(R::zero());
     flow.tangential.fill(R::zero());
@@ -130,7 +137,11 @@ fn impulse_of<R: Real>(model: &Model<'_, R>, potential: &[R], normal: &[R], out:
 /// Adds the direct derivatives of the cores' data by the poses: for weights `c` (on L') and `e` (on νL'') given per node of
 /// boundary m by `weights(m, k)`, α = q (c L' + e ν L'') conj(turn_i), R = Re Σ q e iν L'.
 fn add_core_gradient<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, scale: R, weights: impl Fn(&BoundaryRecord<R>, usize, Complex<R>) -> (R, Complex<R>), out: &mut [R],
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    scale: R,
+    weights: impl Fn(&BoundaryRecord<R>, usize, Complex<R>) -> (R, Complex<R>),
+    out: &mut [R],
 ) {
     for (i, b, strength) in cores(model) {
         let pose = poses.get(i);
@@ -140,7 +151,8 @@ fn add_core_gradient<R: Real>(
             }
             let own = poses.get(m);
             let (turn, shift) = (pose.unturned(own.turn), own.origin - pose.origin);
-            let (mut sum, mut about_target, mut about_core, mut spin) = (Complex::default(), R::zero(), R::zero(), R::zero());
+            let (mut sum, mut about_target, mut about_core, mut spin) =
+                (Complex::<R>::default(), R::zero(), R::zero(), R::zero());
             let values = targets(&nodes, own, pose).zip(normals(target, &nodes)).zip(nodes.points());
             for (k, ((z, n), x)) in values.enumerate() {
                 let [_, d, dd] = core_flow(&b.core, z);
@@ -163,7 +175,12 @@ fn add_core_gradient<R: Real>(
 
 /// Adds ∂T_c/∂q (scaled). One transposed solve, one pass over the pairs.
 pub(crate) fn add_energy_gradient<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>, s: &mut PairScratch<'_, R>, scale: R,
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    system: &BoundarySystem<'_, R>,
+    flow: &mut Flow<'_, R>,
+    s: &mut PairScratch<'_, R>,
+    scale: R,
     out: &mut [R],
 ) {
     crate::workspace::copy(flow.adjoint, flow.tangential);
@@ -191,8 +208,17 @@ pub(crate) fn add_energy_gradient<R: Real>(
 /// velocities in link frames, `work` scratch of three reals per link. One solve, one pass.
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn add_gyroscopic_force<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>, s: &mut PairScratch<'_, R>,
-    qd: &[R], v: &[R], adjoint: &[R], work: &mut [R], scale: R, out: &mut [R],
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    system: &BoundarySystem<'_, R>,
+    flow: &mut Flow<'_, R>,
+    s: &mut PairScratch<'_, R>,
+    qd: &[R],
+    v: &[R],
+    adjoint: &[R],
+    work: &mut [R],
+    scale: R,
+    out: &mut [R],
 ) {
     impulse(model, poses, flow, work);
     for (_, b, _) in model.each_boundary() {
@@ -212,7 +238,9 @@ pub(crate) fn add_gyroscopic_force<R: Real>(
     each_induced(model, poses, flow.potential, flow.stream, s, |pair: Induced<'_, R>| {
         add_pose_gradient(&pair, model, poses, part(adjoint, pair.first, pair.len), -scale, out);
         let rates = relative_rates(&pair, model, poses, qd);
-        for ((a, zd), (hx, hy)) in part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(pair.hx.iter().zip(pair.hy)) {
+        for ((a, zd), (hx, hy)) in
+            part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(pair.hx.iter().zip(pair.hy))
+        {
             *a += zd.re * *hy + zd.im * *hx;
         }
     });

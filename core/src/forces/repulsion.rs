@@ -22,7 +22,10 @@ fn inverse_power<R: Real>(square: R, alpha: R) -> R {
 /// Visits every pair once: calls back with the sums over its nodes of |d|^(−α), and of |d|^(−α−2) d (and its moments about
 /// both origins), d from the second boundary to the first, in world directions.
 fn each_pair<R: Real>(
-    model: &Model<'_, R>, poses: Poses<'_, R>, alpha: R, mut visit: impl FnMut(usize, usize, R, Complex<R>, R, R),
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    alpha: R,
+    mut visit: impl FnMut(usize, usize, R, Complex<R>, R, R),
 ) {
     for (i, a, a_nodes) in model.each_boundary() {
         for (j, b, b_nodes) in model.each_boundary().skip(i + 1) {
@@ -30,7 +33,8 @@ fn each_pair<R: Real>(
                 continue;
             }
             let source = poses.get(j);
-            let (mut energy, mut force, mut moment_a, mut moment_b) = (R::zero(), Complex::default(), R::zero(), R::zero());
+            let (mut energy, mut force, mut moment_a, mut moment_b) =
+                (R::zero(), Complex::default(), R::zero(), R::zero());
             let shift = source.unturned(poses.get(i).origin - source.origin);
             for (z, d) in targets(&a_nodes, poses.get(i), source).zip(a_nodes.tangents()) {
                 let (mut e, mut f, mut m) = (R::zero(), Complex::default(), R::zero());
