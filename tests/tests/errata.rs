@@ -37,7 +37,7 @@ fn outline(a: f64, b: f64, pose: [f64; 3]) -> Vec<Node> {
 
 /// Two ellipses for the repulsion.
 const AXES: [[f64; 2]; 2] = [[0.8, 0.4], [0.5, 0.3]];
-const POSES: [[f64; 3]; 2] = [[-0.7, 0.1, 0.4], [0.6, -0.2, 1.2]];
+const POSES: [[f64; 3]; 2] = [[-0.7, 0.1, 0.4], [1.0, -0.2, 1.2]];
 
 /// Gradients of V with respect to the positions of both bodies in the manner of (5.2): the derivative of a boundary
 /// integral along the normal, which has a curvature term, with `factor` in front of the displacement.
