@@ -8,7 +8,9 @@ use crate::status::{Result, Status};
 
 /// Splits `n` elements off the front of `rest`.
 pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T]> {
-    let (head, tail) = core::mem::take(rest).split_at_mut_checked(n).ok_or(Status::MemoryTooSmall)?;
+    let (head, tail) = core::mem::take(rest)
+        .split_at_mut_checked(n)
+        .ok_or(Status::MemoryTooSmall)?;
     *rest = tail;
     Ok(head)
 }
@@ -16,13 +18,17 @@ pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part<T>(data: &[T], at: usize, n: usize) -> &[T] {
-    at.checked_add(n).and_then(|end| data.get(at..end)).unwrap_or(&[])
+    at.checked_add(n)
+        .and_then(|end| data.get(at..end))
+        .unwrap_or(&[])
 }
 
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part_mut<T>(data: &mut [T], at: usize, n: usize) -> &mut [T] {
-    at.checked_add(n).and_then(|end| data.get_mut(at..end)).unwrap_or(&mut [])
+    at.checked_add(n)
+        .and_then(|end| data.get_mut(at..end))
+        .unwrap_or(&mut [])
 }
 
 /// The element at `i`; NaN when there is none, so that a mistake shows in the result and cannot panic.
@@ -55,10 +61,19 @@ pub(crate) fn copy<T: Copy>(to: &mut [T], from: &[T]) {
     }
 }
 
-/// Scalar product.
+/// Scalar product, summed in eight lanes so that it vectorizes.
 #[inline]
 pub(crate) fn inner<R: Real>(a: &[R], b: &[R]) -> R {
-    a.iter().zip(b).fold(R::zero(), |s, (x, y)| s + *x * *y)
+    let mut lanes = [R::zero(); 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = a8.remainder().iter().zip(part(b, a.len() - a8.remainder().len(), a8.remainder().len()));
+    let tail = rest.fold(R::zero(), |s, (x, y)| s + *x * *y);
+    for (a, b) in a8.zip(b8) {
+        for ((s, x), y) in lanes.iter_mut().zip(a).zip(b) {
+            *s += *x * *y;
+        }
+    }
+    lanes.iter().fold(tail, |s, x| s + *x)
 }
 
 /// `y += a x`.
