@@ -39,16 +39,12 @@ impl<R: Real> Ladder<R> {
         // Below this scale neighbouring nodes would not be distinct numbers.
         let beta = self.beta.max(R::EPSILON * R::lit(128.0));
         let (three, top) = (R::lit(3.0), self.top.min(R::lit(TOP)));
-        core::iter::successors(Some(beta), move |b| Some(*b * three))
-            .take_while(move |b| *b < top)
-            .enumerate()
-            .map(move |(m, b)| {
+        core::iter::successors(Some(beta), move |b| Some(*b * three)).take_while(move |b| *b < top).enumerate().map(
+            move |(m, b)| {
                 let first = if m == 0 { R::lit(1.5) } else { R::one() };
-                (
-                    b,
-                    R::lit(WEIGHT) * first * R::one().min((top / b).ln() / three.ln()),
-                )
-            })
+                (b, R::lit(WEIGHT) * first * R::one().min((top / b).ln() / three.ln()))
+            },
+        )
     }
 
     /// Number of rungs.
@@ -66,13 +62,8 @@ pub fn grading_len(rungs: usize) -> Option<usize> {
 ///
 /// Rungs that ask for the same thing share one weight; the result does not depend on the ladders' order
 /// (up to rounding). Cost: quadratic in the number of rungs. Errors: `MemoryTooSmall`.
-pub fn write_grading<R: Real>(
-    ladders: impl Iterator<Item = Ladder<R>>,
-    store: &mut [R],
-) -> Result<usize> {
-    let (head, body) = store
-        .split_at_mut_checked(HEAD)
-        .ok_or(Status::MemoryTooSmall)?;
+pub fn write_grading<R: Real>(ladders: impl Iterator<Item = Ladder<R>>, store: &mut [R]) -> Result<usize> {
+    let (head, body) = store.split_at_mut_checked(HEAD).ok_or(Status::MemoryTooSmall)?;
     let mut free = body.chunks_exact_mut(RUNG);
     let mut count = 0;
     for ladder in ladders {
@@ -131,21 +122,13 @@ pub struct Grading<'a, R> {
 impl<'a, R: Real> Grading<'a, R> {
     /// The identity.
     pub fn uniform() -> Self {
-        Grading {
-            plain: R::one(),
-            origin: R::zero(),
-            rungs: &[],
-        }
+        Grading { plain: R::one(), origin: R::zero(), rungs: &[] }
     }
 
     /// The grading that [`write_grading`] left in `store`.
     pub fn read(store: &'a [R], rungs: usize) -> Self {
         let len = rungs.saturating_mul(RUNG);
-        Grading {
-            plain: at(store, 0),
-            origin: at(store, 1),
-            rungs: part(store, HEAD, len),
-        }
+        Grading { plain: at(store, 0), origin: at(store, 1), rungs: part(store, HEAD, len) }
     }
 
     /// Number of rungs.
@@ -225,12 +208,8 @@ impl<'a, R: Real> Grading<'a, R> {
             let middle = low + (high - low) * R::HALF;
             let slow = f.abs() > last * R::HALF;
             last = f.abs();
-            let next = if newton > low && newton < high && !slow {
-                newton
-            } else {
-                middle
-            };
-            if next == t || !(low < high) {
+            let next = if newton > low && newton < high && !slow { newton } else { middle };
+            if next == t || low >= high {
                 break;
             }
             t = next;
@@ -249,10 +228,6 @@ impl<'a, R: Real> Grading<'a, R> {
             return Err(Error::new(Status::OutOfRange).of("node", k as f64));
         }
         let s = R::TAU * R::count(k) / R::count(n);
-        if k == 0 || self.rungs.is_empty() {
-            Ok(s)
-        } else {
-            self.inverse(s, s)
-        }
+        if k == 0 || self.rungs.is_empty() { Ok(s) } else { self.inverse(s, s) }
     }
 }

@@ -18,17 +18,7 @@ mod sealed {
 
 /// Scalar type of a model: `f32` or `f64`. Sealed.
 pub trait Real:
-    sealed::Sealed
-    + Copy
-    + Default
-    + PartialOrd
-    + Debug
-    + Display
-    + Send
-    + Sync
-    + 'static
-    + NumAssign
-    + Neg<Output = Self>
+    sealed::Sealed + Copy + Default + PartialOrd + Debug + Display + Send + Sync + 'static + NumAssign + Neg<Output = Self>
 {
     /// Not a number; the value that an access out of range yields.
     const NAN: Self;
@@ -102,20 +92,12 @@ pub trait Real:
     /// The larger; NaN when either is NaN, so that a poisoned value is never hidden.
     #[inline]
     fn max(self, other: Self) -> Self {
-        if self > other || self.is_nan() {
-            self
-        } else {
-            other
-        }
+        if self > other || self.is_nan() { self } else { other }
     }
     /// The smaller; NaN when either is NaN.
     #[inline]
     fn min(self, other: Self) -> Self {
-        if self < other || self.is_nan() {
-            self
-        } else {
-            other
-        }
+        if self < other || self.is_nan() { self } else { other }
     }
     /// Is not a number.
     #[inline]
@@ -205,12 +187,8 @@ macro_rules! real {
         }
     };
 }
-real!(
-    f64, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor
-);
-real!(
-    f32, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf
-);
+real!(f64, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor);
+real!(f32, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf);
 
 /// `x + i y`.
 #[inline]

@@ -100,13 +100,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 impl Error {
     /// An error without place or value.
     pub const fn new(status: Status) -> Self {
-        Error {
-            status,
-            place: Place::Scene,
-            other: None,
-            what: "",
-            value: f64::NAN,
-        }
+        Error { status, place: Place::Scene, other: None, what: "", value: f64::NAN }
     }
     /// The same error at a place.
     pub const fn at(mut self, place: Place) -> Self {

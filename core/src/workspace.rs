@@ -8,9 +8,7 @@ use crate::status::{Result, Status};
 
 /// Splits `n` elements off the front of `rest`.
 pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T]> {
-    let (head, tail) = core::mem::take(rest)
-        .split_at_mut_checked(n)
-        .ok_or(Status::MemoryTooSmall)?;
+    let (head, tail) = core::mem::take(rest).split_at_mut_checked(n).ok_or(Status::MemoryTooSmall)?;
     *rest = tail;
     Ok(head)
 }
@@ -18,17 +16,13 @@ pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part<T>(data: &[T], at: usize, n: usize) -> &[T] {
-    at.checked_add(n)
-        .and_then(|end| data.get(at..end))
-        .unwrap_or(&[])
+    at.checked_add(n).and_then(|end| data.get(at..end)).unwrap_or(&[])
 }
 
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part_mut<T>(data: &mut [T], at: usize, n: usize) -> &mut [T] {
-    at.checked_add(n)
-        .and_then(|end| data.get_mut(at..end))
-        .unwrap_or(&mut [])
+    at.checked_add(n).and_then(|end| data.get_mut(at..end)).unwrap_or(&mut [])
 }
 
 /// The element at `i`; NaN when there is none, so that a mistake shows in the result and cannot panic.

@@ -37,15 +37,9 @@ impl<'a, R: Real> Fourier<'a, R> {
         let pairs = self.coefficients.as_chunks::<2>().0;
         let (low, high) = pairs.split_at_checked(self.down).unwrap_or((&[], &[]));
         // One type for both directions: exactly one of the two parts is empty.
-        let walk = |up: &'a [[R; 2]], down: &'a [[R; 2]]| {
-            up.iter()
-                .chain(down.iter().rev())
-                .map(|&[re, im]| complex(re, im))
-        };
-        [
-            (self.centre, self.stride, walk(high, &[])),
-            (self.centre - self.stride, -self.stride, walk(&[], low)),
-        ]
+        let walk =
+            |up: &'a [[R; 2]], down: &'a [[R; 2]]| up.iter().chain(down.iter().rev()).map(|&[re, im]| complex(re, im));
+        [(self.centre, self.stride, walk(high, &[])), (self.centre - self.stride, -self.stride, walk(&[], low))]
     }
 
     /// Sums with the powers of `z(k) = e^(ikt)`.

@@ -86,16 +86,8 @@ pub struct AreaProperties<R> {
 #[derive(Clone, Copy, Debug)]
 enum Kind<R> {
     Ellipse(Ellipse<R>),
-    Polygon {
-        corners: usize,
-        perimeter: R,
-    },
-    Fourier {
-        centre: R,
-        stride: R,
-        down: usize,
-        count: usize,
-    },
+    Polygon { corners: usize, perimeter: R },
+    Fourier { centre: R, stride: R, down: usize, count: usize },
 }
 
 impl<R: Real> Kind<R> {
@@ -112,21 +104,10 @@ impl<R: Real> Kind<R> {
         let own = part(store, 0, self.len());
         match *self {
             Kind::Ellipse(ellipse) => Curve::Ellipse(ellipse),
-            Kind::Polygon { perimeter, .. } => Curve::Polygon(Polygon {
-                perimeter,
-                corners: own,
-            }),
-            Kind::Fourier {
-                centre,
-                stride,
-                down,
-                ..
-            } => Curve::Fourier(Fourier {
-                centre,
-                stride,
-                down,
-                coefficients: own,
-            }),
+            Kind::Polygon { perimeter, .. } => Curve::Polygon(Polygon { perimeter, corners: own }),
+            Kind::Fourier { centre, stride, down, .. } => {
+                Curve::Fourier(Fourier { centre, stride, down, coefficients: own })
+            }
         }
     }
 }
@@ -142,15 +123,8 @@ impl<R: Real> Outline<R> {
     /// The outline together with the store it was compiled into.
     pub fn view<'a>(&self, store: &'a [R]) -> OutlineView<'a, R> {
         let graded = store.get(self.kind.len()..).unwrap_or(&[]);
-        let grading = if self.rungs == 0 {
-            Grading::uniform()
-        } else {
-            Grading::read(graded, self.rungs)
-        };
-        OutlineView {
-            curve: self.kind.curve(store),
-            grading,
-        }
+        let grading = if self.rungs == 0 { Grading::uniform() } else { Grading::read(graded, self.rungs) };
+        OutlineView { curve: self.kind.curve(store), grading }
     }
 }
 
@@ -182,12 +156,7 @@ impl<R: Real> OutlineView<'_, R> {
         let [x, first, second] = self.curve.jet_real(t);
         let [_, slope, bend] = self.grading.jet(t);
         let rate = R::one() / slope;
-        Node {
-            t,
-            x,
-            dx: first * rate,
-            ddx: (second - first * (bend * rate)) * (rate * rate),
-        }
+        Node { t, x, dx: first * rate, ddx: (second - first * (bend * rate)) * (rate * rate) }
     }
 
     /// Node `k` of `n`, at s = 2πk/n. Errors: `OutOfRange` unless k < n, `Internal` when the parameter could not
@@ -217,10 +186,9 @@ impl<R: Real> OutlineView<'_, R> {
             Curve::Ellipse(ellipse) => return Ok(ellipse.properties()),
             Curve::Polygon(_) => 0,
             // Nodes per wave of the highest mode.
-            Curve::Fourier(fourier) => fourier
-                .modes()
-                .fold(R::zero(), |top, (k, _)| top.max(k.abs()))
-                .to_f64() as usize,
+            Curve::Fourier(fourier) => {
+                fourier.modes().fold(R::zero(), |top, (k, _)| top.max(k.abs())).to_f64() as usize
+            }
         };
         let n = (self.grading.rungs() * 32).max(modes * 16).max(2048);
         let step = R::TAU / R::count(n);

@@ -36,50 +36,30 @@ struct Corner<R> {
 
 impl<'a, R: Real> Polygon<'a, R> {
     fn corners(&self) -> impl Iterator<Item = Corner<R>> + 'a {
-        self.corners.as_chunks::<CORNER>().0.iter().map(
-            |&[vx, vy, dx, dy, jx, jy, arclength, r]| Corner {
-                vertex: complex(vx, vy),
-                direction: complex(dx, dy),
-                jump: complex(jx, jy),
-                arclength,
-                r,
-            },
-        )
+        self.corners.as_chunks::<CORNER>().0.iter().map(|&[vx, vy, dx, dy, jx, jy, arclength, r]| Corner {
+            vertex: complex(vx, vy),
+            direction: complex(dx, dy),
+            jump: complex(jx, jy),
+            arclength,
+            r,
+        })
     }
 
     /// Arclength in [0, P), and the corner where its side begins.
     fn locate(&self, t: R) -> (R, Corner<R>) {
         let turns = (t / R::TAU).floor();
         let reduced = (t - turns * R::TAU) * self.perimeter / R::TAU;
-        let sigma = if reduced >= R::zero() && reduced < self.perimeter {
-            reduced
-        } else {
-            R::zero()
-        };
+        let sigma = if reduced >= R::zero() && reduced < self.perimeter { reduced } else { R::zero() };
         let nowhere = complex(R::NAN, R::NAN);
-        let start = Corner {
-            vertex: nowhere,
-            direction: nowhere,
-            jump: nowhere,
-            arclength: R::NAN,
-            r: R::NAN,
-        };
-        (
-            sigma,
-            self.corners()
-                .take_while(|c| c.arclength <= sigma)
-                .last()
-                .unwrap_or(start),
-        )
+        let start = Corner { vertex: nowhere, direction: nowhere, jump: nowhere, arclength: R::NAN, r: R::NAN };
+        (sigma, self.corners().take_while(|c| c.arclength <= sigma).last().unwrap_or(start))
     }
 
     /// Distances of σ past a corner and its periodic images, as far as `reach`.
     fn images(&self, y: R, reach: R) -> impl Iterator<Item = R> + 'a {
         let p = self.perimeter;
         let first = y - ((reach + y) / p).floor() * p;
-        core::iter::successors(Some(first), move |y| Some(*y + p))
-            .take_while(move |y| *y <= reach)
-            .take(256)
+        core::iter::successors(Some(first), move |y| Some(*y + p)).take_while(move |y| *y <= reach).take(256)
     }
 
     pub(super) fn jet(&self, t: Complex<R>) -> [Complex<R>; 3] {
@@ -140,11 +120,7 @@ impl<'a, R: Real> Polygon<'a, R> {
                 } else {
                     let z = q - (y.abs() / r + e.ln_1p());
                     let grown = || z + cln_1p(cexp(-z) / complex(R::one() + e, R::zero()));
-                    if z.re > R::zero() {
-                        grown()
-                    } else {
-                        cln_1p(cexp(z) - a)
-                    }
+                    if z.re > R::zero() { grown() } else { cln_1p(cexp(z) - a) }
                 };
                 sum += corner.jump * term * r;
             }
@@ -155,21 +131,14 @@ impl<'a, R: Real> Polygon<'a, R> {
     /// The permanent ladder of every corner: scale of the zeros of γ′, faded over the longer adjacent side.
     pub(super) fn ladders(&self) -> impl Iterator<Item = Ladder<R>> + 'a {
         let p = self.perimeter;
-        let ends = self
-            .corners()
-            .map(|c| c.arclength)
-            .skip(1)
-            .chain(core::iter::once(p));
+        let ends = self.corners().map(|c| c.arclength).skip(1).chain(core::iter::once(p));
         let mut before = p - self.corners().last().map_or(R::zero(), |c| c.arclength);
         self.corners().zip(ends).filter_map(move |(c, end)| {
             let (last, side) = (before, end - c.arclength);
             before = side;
             let turn = turn(c.direction - c.jump, c.direction).abs();
-            let ladder = Ladder {
-                t: c.arclength * R::TAU / p,
-                beta: scale(c.r, turn, p),
-                top: side.max(last) * R::TAU / p,
-            };
+            let ladder =
+                Ladder { t: c.arclength * R::TAU / p, beta: scale(c.r, turn, p), top: side.max(last) * R::TAU / p };
             // A corner that does not turn leaves no trace in the flow.
             (turn * turn > R::EPSILON).then_some(ladder)
         })
@@ -188,10 +157,7 @@ pub(super) fn check<R: Real>(vertices: &[[R; 2]], scratch: &mut [R]) -> Result<b
     if n < 3 {
         return Err(Error::new(Status::BadShape).of("vertices", n as f64));
     }
-    if let Some(k) = vertices
-        .iter()
-        .position(|[x, y]| !(x.is_finite() && y.is_finite()))
-    {
+    if let Some(k) = vertices.iter().position(|[x, y]| !(x.is_finite() && y.is_finite())) {
         return Err(bad(Status::NotFinite, k));
     }
     let corner = |k: usize| point(flat, k);
@@ -203,19 +169,12 @@ pub(super) fn check<R: Real>(vertices: &[[R; 2]], scratch: &mut [R]) -> Result<b
     if straight(corner, n) {
         return Err(Error::new(Status::BadShape).of("area", 0.0));
     }
-    if let Some((_, j)) = crossing(
-        flat,
-        part_mut(scratch, 0, boxes_len(n)),
-        rounding,
-        R::zero(),
-    ) {
+    if let Some((_, j)) = crossing(flat, part_mut(scratch, 0, boxes_len(n)), rounding, R::zero()) {
         return Err(bad(Status::SelfIntersection, j));
     }
     // Sides that fold back onto each other.
     let direction = |k: usize| corner(after(k, n)) - corner(k);
-    if let Some(k) =
-        (0..n).find(|&k| R::PI - turn(direction(k), direction(after(k, n))).abs() < R::lit(1e-4))
-    {
+    if let Some(k) = (0..n).find(|&k| R::PI - turn(direction(k), direction(after(k, n))).abs() < R::lit(1e-4)) {
         return Err(bad(Status::SelfIntersection, after(k, n)));
     }
     Ok(area(corner, n) < R::zero())
@@ -223,11 +182,7 @@ pub(super) fn check<R: Real>(vertices: &[[R; 2]], scratch: &mut [R]) -> Result<b
 
 /// Perimeter, and the corner radius with its default. Errors: `OutOfRange` when the radius is not positive or too
 /// small to be told from a sharp corner in this precision (32 roundings of the perimeter).
-fn measure<R: Real>(
-    vertex: impl Fn(usize) -> Complex<R>,
-    n: usize,
-    radius: Option<R>,
-) -> Result<(R, R)> {
+fn measure<R: Real>(vertex: impl Fn(usize) -> Complex<R>, n: usize, radius: Option<R>) -> Result<(R, R)> {
     let (mut perimeter, mut shortest) = (R::zero(), R::MAX);
     for k in 0..n {
         let side = cabs(vertex(after(k, n)) - vertex(k));
@@ -255,22 +210,14 @@ fn scale<R: Real>(r: R, turn: R, perimeter: R) -> R {
 }
 
 /// Upper bound of the number of rungs of a polygon's ladders, one more per corner than its sides as given need.
-pub(super) fn rungs<R: Real>(
-    vertex: impl Fn(usize) -> Complex<R>,
-    n: usize,
-    radius: Option<R>,
-) -> Result<usize> {
+pub(super) fn rungs<R: Real>(vertex: impl Fn(usize) -> Complex<R>, n: usize, radius: Option<R>) -> Result<usize> {
     let (perimeter, radius) = measure(&vertex, n, radius)?;
     let mut before = vertex(0) - vertex(n.saturating_sub(1));
     Ok((0..n).fold(0usize, |sum, k| {
         let next = vertex(after(k, n)) - vertex(k);
         let turn = turn(before, next).abs();
         before = next;
-        let ladder = Ladder {
-            t: R::zero(),
-            beta: scale(width(radius, turn), turn, perimeter),
-            top: R::lit(TOP),
-        };
+        let ladder = Ladder { t: R::zero(), beta: scale(width(radius, turn), turn, perimeter), top: R::lit(TOP) };
         sum.saturating_add(ladder.count()).saturating_add(1)
     }))
 }
@@ -291,16 +238,10 @@ pub(super) fn write<R: Real>(
     let mut first = R::zero();
     for k in 0..n {
         let (at, next) = (vertex(k), side(k));
-        let (unit, last) = (
-            next / complex(cabs(next), R::zero()),
-            before / complex(cabs(before), R::zero()),
-        );
+        let (unit, last) = (next / complex(cabs(next), R::zero()), before / complex(cabs(before), R::zero()));
         let turn = turn(before, next).abs();
         // Length of the side that an arc of this radius takes.
-        tangents = [
-            tangents[1],
-            radius * (turn * R::HALF).sin() / (turn * R::HALF).cos(),
-        ];
+        tangents = [tangents[1], radius * (turn * R::HALF).sin() / (turn * R::HALF).cos()];
         if k == 0 {
             first = tangents[1];
         } else if tangents[0] + tangents[1] > cabs(before) * R::lit(1.0 + 1e-6) {
@@ -308,9 +249,7 @@ pub(super) fn write<R: Real>(
         }
         let r = width(radius, turn);
         let jump = unit - last;
-        let record = [
-            at.re, at.im, unit.re, unit.im, jump.re, jump.im, arclength, r,
-        ];
+        let record = [at.re, at.im, unit.re, unit.im, jump.re, jump.im, arclength, r];
         for (j, x) in record.into_iter().enumerate() {
             put(store, k * CORNER + j, x);
         }
@@ -324,12 +263,7 @@ pub(super) fn write<R: Real>(
 }
 
 /// Writes the corners of a rectangle about the origin whose rounded outline measures `width` by `height`.
-pub(super) fn write_rectangle<R: Real>(
-    width: R,
-    height: R,
-    radius: Option<R>,
-    store: &mut [R],
-) -> Result<R> {
+pub(super) fn write_rectangle<R: Real>(width: R, height: R, radius: Option<R>, store: &mut [R]) -> Result<R> {
     let corner = |x: R, y: R| {
         move |k: usize| match k {
             0 => complex(-x, -y) * R::HALF,
@@ -342,10 +276,7 @@ pub(super) fn write_rectangle<R: Real>(
     let mut perimeter = write(corner(x, y), 4, radius, store)?;
     // Rounding shrinks short sides; stretch until the middles of the sides are where they belong.
     for _ in 0..60 {
-        let outline = Polygon {
-            perimeter,
-            corners: part(store, 0, 4 * CORNER),
-        };
+        let outline = Polygon { perimeter, corners: part(store, 0, 4 * CORNER) };
         let middle = |sigma: R| outline.jet_real(sigma * R::TAU / perimeter)[0];
         let right = middle(x + y * R::HALF).re * R::TWO - width;
         let top = middle(x * R::lit(1.5) + y).im * R::TWO - height;

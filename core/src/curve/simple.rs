@@ -13,10 +13,7 @@ pub(super) const fn boxes_len(n: usize) -> usize {
 
 /// Point `i` of coordinates in turn.
 pub(super) fn point<R: Real>(points: &[R], i: usize) -> Complex<R> {
-    complex(
-        at(points, i.saturating_mul(2)),
-        at(points, i.saturating_mul(2).saturating_add(1)),
-    )
+    complex(at(points, i.saturating_mul(2)), at(points, i.saturating_mul(2).saturating_add(1)))
 }
 
 /// The number after `i` in a cycle of `n`.
@@ -32,20 +29,19 @@ pub(super) fn cross<R: Real>(a: Complex<R>, b: Complex<R>) -> R {
 /// Signed area of the polygon with these corners.
 pub(super) fn area<R: Real>(corner: impl Fn(usize) -> Complex<R>, n: usize) -> R {
     let origin = corner(0);
-    let twice = (0..n).fold(R::zero(), |sum, i| {
-        sum + cross(corner(i) - origin, corner(after(i, n)) - origin)
-    });
+    let twice = (0..n).fold(R::zero(), |sum, i| sum + cross(corner(i) - origin, corner(after(i, n)) - origin));
     twice * R::HALF
 }
 
 /// All points lie on one line, to rounding.
 pub(super) fn straight<R: Real>(corner: impl Fn(usize) -> Complex<R>, n: usize) -> bool {
     let origin = corner(0);
-    let far = (0..n)
-        .map(|i| corner(i) - origin)
-        .fold(Complex::default(), |far: Complex<R>, z| {
+    let far = (0..n).map(|i| corner(i) - origin).fold(
+        Complex::default(),
+        |far: Complex<R>, z| {
             if cabs(z) > cabs(far) { z } else { far }
-        });
+        },
+    );
     let length = cabs(far);
     let unit = far / complex(length, R::zero());
     (0..n).all(|i| cross(unit, corner(i) - origin).abs() <= R::EPSILON * R::lit(64.0) * length)
@@ -54,11 +50,7 @@ pub(super) fn straight<R: Real>(corner: impl Fn(usize) -> Complex<R>, n: usize) 
 fn point_to_segment<R: Real>(p: Complex<R>, a: Complex<R>, b: Complex<R>) -> R {
     let (d, w) = (b - a, p - a);
     let square = dot(d, d);
-    let along = if square > R::zero() {
-        (dot(w, d) / square).max(R::zero()).min(R::one())
-    } else {
-        R::zero()
-    };
+    let along = if square > R::zero() { (dot(w, d) / square).max(R::zero()).min(R::one()) } else { R::zero() };
     cabs(w - d * along)
 }
 
@@ -70,19 +62,12 @@ fn meet<R: Real>(a: Complex<R>, b: Complex<R>, c: Complex<R>, d: Complex<R>, nea
         return true;
     }
     let ends = point_to_segment(a, c, d).min(point_to_segment(b, c, d));
-    ends.min(point_to_segment(c, a, b))
-        .min(point_to_segment(d, a, b))
-        <= near
+    ends.min(point_to_segment(c, a, b)).min(point_to_segment(d, a, b)) <= near
 }
 
 /// The first pair of segments of a closed polyline, neighbours apart, that meet: closer than
 /// `absolute + relative · (the shorter segment)`. `boxes` has [`boxes_len`] elements.
-pub(super) fn crossing<R: Real>(
-    points: &[R],
-    boxes: &mut [R],
-    absolute: R,
-    relative: R,
-) -> Option<(usize, usize)> {
+pub(super) fn crossing<R: Real>(points: &[R], boxes: &mut [R], absolute: R, relative: R) -> Option<(usize, usize)> {
     let n = points.len() / 2;
     let end = |i: usize| point(points, after(i, n));
     let longest = (0..n).fold(R::zero(), |l, i| l.max(cabs(end(i) - point(points, i))));
@@ -92,12 +77,7 @@ pub(super) fn crossing<R: Real>(
         let mut limits = [R::MAX, R::MAX, -R::MAX, -R::MAX];
         for i in b * BLOCK..n.min(b * BLOCK + BLOCK) {
             for z in [point(points, i), end(i)] {
-                limits = [
-                    limits[0].min(z.re),
-                    limits[1].min(z.im),
-                    limits[2].max(z.re),
-                    limits[3].max(z.im),
-                ];
+                limits = [limits[0].min(z.re), limits[1].min(z.im), limits[2].max(z.re), limits[3].max(z.im)];
             }
         }
         for (k, x) in limits.into_iter().enumerate() {
@@ -108,9 +88,7 @@ pub(super) fn crossing<R: Real>(
     let limit = |b: usize, k: usize| at(boxes, b * 4 + k);
     for b in 0..blocks {
         for c in b..blocks {
-            if (0..2).any(|k| {
-                limit(b, k) > limit(c, k + 2) + margin || limit(c, k) > limit(b, k + 2) + margin
-            }) {
+            if (0..2).any(|k| limit(b, k) > limit(c, k + 2) + margin || limit(c, k) > limit(b, k + 2) + margin) {
                 continue;
             }
             for i in b * BLOCK..n.min(b * BLOCK + BLOCK) {

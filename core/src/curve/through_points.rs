@@ -40,9 +40,7 @@ buffers! {
 /// The point at or before sample `i` of the grid.
 pub(super) fn point_before<R: Real>(knots: &[R], n: usize, i: usize) -> usize {
     let t = R::TAU * R::count(i) / R::count(samples(n));
-    part(knots, EXTRA, n)
-        .partition_point(|knot| *knot <= t)
-        .saturating_sub(1)
+    part(knots, EXTRA, n).partition_point(|knot| *knot <= t).saturating_sub(1)
 }
 
 /// Number of samples on the grid.
@@ -52,9 +50,7 @@ pub(super) const fn samples(n: usize) -> usize {
 
 /// Reals for the coefficients of a curve through `n` points.
 pub(super) const fn coefficients_len(n: usize) -> usize {
-    n.saturating_mul(2 * MODES)
-        .saturating_add(1)
-        .saturating_mul(2)
+    n.saturating_mul(2 * MODES).saturating_add(1).saturating_mul(2)
 }
 
 /// Writes the knots, continued periodically.
@@ -90,19 +86,10 @@ fn cyclic(i: isize, n: usize) -> usize {
 
 /// The six quintic B-splines that do not vanish at τ in [0, 2π), with the knots of their centres.
 fn basis<R: Real>(knots: &[R], n: usize, tau: R) -> impl Iterator<Item = (usize, R)> {
-    let i = part(knots, EXTRA, n)
-        .partition_point(|knot| *knot <= tau)
-        .saturating_sub(1);
+    let i = part(knots, EXTRA, n).partition_point(|knot| *knot <= tau).saturating_sub(1);
     let left = |j: usize| tau - at(knots, i + EXTRA + 1 - j);
     let right = |j: usize| at(knots, i + EXTRA + j) - tau;
-    let mut values = [
-        R::one(),
-        R::zero(),
-        R::zero(),
-        R::zero(),
-        R::zero(),
-        R::zero(),
-    ];
+    let mut values = [R::one(), R::zero(), R::zero(), R::zero(), R::zero(), R::zero()];
     for degree in 1..=5 {
         let mut saved = R::zero();
         for r in 0..degree {
@@ -112,19 +99,14 @@ fn basis<R: Real>(knots: &[R], n: usize, tau: R) -> impl Iterator<Item = (usize,
         }
         put(&mut values, degree, saved);
     }
-    values
-        .into_iter()
-        .enumerate()
-        .map(move |(q, value)| (cyclic(i as isize + q as isize - 2, n), value))
+    values.into_iter().enumerate().map(move |(q, value)| (cyclic(i as isize + q as isize - 2, n), value))
 }
 
 /// Gaussian elimination with partial pivoting on rows of `n` coefficients and two right-hand sides.
 fn solve<R: Real>(rows: &mut [R], n: usize, solution: &mut [R]) -> Result<()> {
     let width = n.saturating_add(2);
     for k in 0..n {
-        let (head, tail) = rows
-            .split_at_mut_checked((k + 1) * width)
-            .ok_or(Status::Internal)?;
+        let (head, tail) = rows.split_at_mut_checked((k + 1) * width).ok_or(Status::Internal)?;
         let pivot = part_mut(head, k * width, width);
         let (mut best, mut size) = (None, at(pivot, k).abs());
         for (i, row) in tail.chunks_exact(width.max(1)).enumerate() {
@@ -138,29 +120,19 @@ fn solve<R: Real>(rows: &mut [R], n: usize, solution: &mut [R]) -> Result<()> {
             }
         }
         let lead = at(pivot, k);
-        if !(lead.abs() > R::zero()) {
+        if lead == R::zero() || !lead.is_finite() {
             return Err(Status::Singular.into());
         }
         for row in tail.chunks_exact_mut(width.max(1)) {
             let factor = at(row, k) / lead;
-            axpy(
-                part_mut(row, k, width - k),
-                -factor,
-                part(pivot, k, width - k),
-            );
+            axpy(part_mut(row, k, width - k), -factor, part(pivot, k, width - k));
         }
     }
     for k in (0..n).rev() {
         let row = part(rows, k * width, width);
         for side in 0..2 {
-            let known = (k + 1..n).fold(R::zero(), |sum, j| {
-                sum + at(row, j) * at(solution, 2 * j + side)
-            });
-            put(
-                solution,
-                2 * k + side,
-                (at(row, n + side) - known) / at(row, k),
-            );
+            let known = (k + 1..n).fold(R::zero(), |sum, j| sum + at(row, j) * at(solution, 2 * j + side));
+            put(solution, 2 * k + side, (at(row, n + side) - known) / at(row, k));
         }
     }
     Ok(())
@@ -191,12 +163,7 @@ pub(super) fn write<R: Real>(
     let width = n.saturating_add(2);
     memory.rows.fill(R::zero());
     let norm = R::one() / (R::lit(8.0) * R::TAU.sqrt());
-    for (k, row) in memory
-        .rows
-        .chunks_exact_mut(width.max(1))
-        .enumerate()
-        .take(n)
-    {
+    for (k, row) in memory.rows.chunks_exact_mut(width.max(1)).enumerate().take(n) {
         let here = at(knots, k + EXTRA) / step;
         let centre = here.round();
         for offset in -WINDOW..=WINDOW {
@@ -214,9 +181,7 @@ pub(super) fn write<R: Real>(
     solve(memory.rows, n, memory.control)?;
     for (i, pair) in memory.samples.as_chunks_mut::<2>().0.iter_mut().enumerate() {
         let value = basis(knots, n, step * R::count(i))
-            .fold(Complex::default(), |sum: Complex<R>, (j, b)| {
-                sum + point(memory.control, j) * b
-            });
+            .fold(Complex::default(), |sum: Complex<R>, (j, b)| sum + point(memory.control, j) * b);
         *pair = [value.re, value.im];
     }
     let top = MODES.saturating_mul(n);
@@ -230,19 +195,13 @@ pub(super) fn write<R: Real>(
         put(store, 2 * j + 1, c.im);
     }
     let size = (0..=2 * top).fold(R::zero(), |s, j| s.max(cabs(mode(store, j))));
-    let seen = |k: usize| {
-        cabs(mode(store, top - k)).max(cabs(mode(store, top + k)))
-            > size * R::EPSILON / R::lit(20.0)
-    };
+    let seen = |k: usize| cabs(mode(store, top - k)).max(cabs(mode(store, top + k))) > size * R::EPSILON / R::lit(20.0);
     let last = (2..=top).rev().find(|&k| seen(k)).unwrap_or(1);
     for j in 0..2 * (2 * last + 1) {
         let value = at(store, j + 2 * (top - last));
         put(store, j, value);
     }
-    Ok(Modes {
-        down: last + 1,
-        count: 2 * last + 1,
-    })
+    Ok(Modes { down: last + 1, count: 2 * last + 1 })
 }
 
 /// Σᵢ fᵢ e^(−2πi k i/m) for k = −top … top, of the m samples f; O(m · top).
@@ -254,13 +213,7 @@ fn transform<R: Real>(samples: &[R], roots: &mut [R], top: usize, modes: &mut [R
         let (s, c) = (step * R::count(i)).sin_cos();
         *pair = [c, -s];
     }
-    for (j, pair) in modes
-        .as_chunks_mut::<2>()
-        .0
-        .iter_mut()
-        .take(2 * top + 1)
-        .enumerate()
-    {
+    for (j, pair) in modes.as_chunks_mut::<2>().0.iter_mut().take(2 * top + 1).enumerate() {
         let stride = if j >= top { j - top } else { m + j - top };
         let mut turn = 0;
         let mut sum = Complex::default();
@@ -279,23 +232,11 @@ fn transform<R: Real>(samples: &[R], roots: &mut [R], top: usize, modes: &mut [R
 #[cfg(feature = "fft")]
 fn transform<R: Real>(samples: &[R], _roots: &mut [R], top: usize, modes: &mut [R]) {
     let pairs = samples.as_chunks::<2>().0.iter();
-    let mut data: alloc::vec::Vec<_> = pairs
-        .map(|&[re, im]| rustfft::num_complex::Complex {
-            re: re.to_f64(),
-            im: im.to_f64(),
-        })
-        .collect();
+    let mut data: alloc::vec::Vec<_> =
+        pairs.map(|&[re, im]| rustfft::num_complex::Complex { re: re.to_f64(), im: im.to_f64() }).collect();
     let m = data.len();
-    rustfft::FftPlanner::new()
-        .plan_fft_forward(m)
-        .process(&mut data);
-    for (j, pair) in modes
-        .as_chunks_mut::<2>()
-        .0
-        .iter_mut()
-        .take(2 * top + 1)
-        .enumerate()
-    {
+    rustfft::FftPlanner::new().plan_fft_forward(m).process(&mut data);
+    for (j, pair) in modes.as_chunks_mut::<2>().0.iter_mut().take(2 * top + 1).enumerate() {
         if let Some(c) = data.get(if j >= top { j - top } else { m + j - top }) {
             *pair = [R::lit(c.re), R::lit(c.im)];
         }
