@@ -89,7 +89,7 @@ impl<R: Real> Shape<'_, R> {
         };
         match *self {
             Shape::Ellipse { .. } => Ok(Sizes { own: 0, rungs: 0, scratch: 0 }),
-            Shape::Star { lobes, .. } => Ok(Sizes { own: 6, rungs: star_rungs(lobes), scratch: 0 }),
+            Shape::Star { .. } => Ok(Sizes { own: 6, rungs: 0, scratch: 0 }),
             Shape::Rectangle { width, height, radius } => polygon(&rectangle(width, height), radius),
             Shape::Polygon { vertices, radius } => polygon(vertices, radius),
             Shape::Curve { points } => Ok(Sizes {
@@ -136,7 +136,7 @@ impl<R: Real> Shape<'_, R> {
                     put(store, 2 * k + 1, R::zero());
                 }
                 let kind = Kind::Fourier { centre: R::one(), stride: R::count(lobes), down: 1, count: 3 };
-                Ok((grade_bends(kind, lobes.max(8) * 64, sizes.rungs, &mut [], store)?, Status::Ok))
+                Ok((Outline { kind, rungs: 0 }, Status::Ok))
             }
             Shape::Rectangle { width, height, radius } => {
                 let perimeter = polygon::write_rectangle(width, height, radius, store)?;
@@ -221,11 +221,6 @@ impl<R: Real> Shape<'_, R> {
     }
 }
 
-/// Rungs of a star, at most: a ladder at every tip and every trough.
-fn star_rungs(lobes: usize) -> usize {
-    lobes.min(MAX_LOBES) * 2 * BEND_RUNGS
-}
-
 fn radius_given<R: Real>(radius: Option<R>) -> Result<()> {
     match radius {
         Some(r) if !r.is_finite() => Err(Error::new(Status::NotFinite).of("radius", r.to_f64())),
@@ -249,7 +244,10 @@ fn points_given<R: Real>(all: &'static str, one: &'static str, points: &[[R; 2]]
     length(one, size).map_err(|e| if size > R::zero() { e.of(one, far as f64) } else { e.of(one, 1.0) })
 }
 
-/// Grades a Fourier outline at its bends; leaves the samples in `positions` if there is room.
+/// Grades a curve through points at its bends, convex and concave; leaves its samples in `positions`.
+///
+/// Stars are not graded: among ten bends or so the ladders compete, and the polar angle already resolves them
+/// (0.3, 5 lobes alone, 48 nodes: added mass to 1e-6 as against 1e-3).
 fn grade_bends<R: Real>(
     kind: Kind<R>,
     samples: usize,

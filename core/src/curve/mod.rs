@@ -7,6 +7,8 @@
 //! vertices span by about 0.8 R e^(−1.3 L/R) at a side of length L with right angles: 3 % of L at the largest radius
 //! L/2, 10⁻⁶ L at L/10, nothing to rounding from L/28 on.
 
+#[cfg(test)]
+mod added_mass_test;
 mod compile;
 mod ellipse;
 mod fourier;
