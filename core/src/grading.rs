@@ -238,6 +238,7 @@ impl<'a, R: Real> Grading<'a, R> {
 }
 
 #[cfg(test)]
+#[allow(clippy::indexing_slicing)]
 mod tests {
     extern crate std;
     use super::*;

@@ -1,5 +1,6 @@
 //! The outlines and their nodes, judged by the added mass that they lead to: a Nyström solution of the double layer.
 
+#![allow(clippy::indexing_slicing)]
 extern crate std;
 use super::tests::compile;
 use super::*;

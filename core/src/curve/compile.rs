@@ -108,7 +108,8 @@ impl<R: Real> Shape<'_, R> {
         graded.filter(|n| *n < usize::MAX / 64).ok_or(Status::SizeOverflow.into())
     }
 
-    /// Reals needed while compiling. Depends on the shape only. Errors as for [`store_len`](Self::store_len).
+    /// Reals needed while compiling: about n² + 100 n for a curve through n points, 130 per corner, else none.
+    /// Depends on the shape only. Errors as for [`store_len`](Self::store_len).
     pub fn scratch_len(&self) -> Result<usize> {
         let scratch = self.sizes()?.scratch;
         if scratch < usize::MAX / 64 { Ok(scratch) } else { Err(Status::SizeOverflow.into()) }
@@ -116,6 +117,8 @@ impl<R: Real> Shape<'_, R> {
 
     /// Validates the shape and writes its curve and grading into `store`.
     ///
+    /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
+    /// of the shortest side; from 32 roundings of the perimeter up to where two arcs no longer fit on a side.
     /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`.
     /// Errors name the measure, corner ("vertex") or point: `NotFinite`, `BadShape`, `OutOfRange`,
     /// `SelfIntersection`; `MemoryTooSmall`.

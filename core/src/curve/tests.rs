@@ -1,3 +1,4 @@
+#![allow(clippy::indexing_slicing)]
 extern crate std;
 use super::*;
 use crate::scalar::cis;

@@ -244,6 +244,7 @@ fn transform<R: Real>(samples: &[R], _roots: &mut [R], top: usize, modes: &mut [
 }
 
 #[cfg(test)]
+#[allow(clippy::indexing_slicing)]
 mod tests {
     extern crate std;
     use super::*;
