@@ -261,7 +261,7 @@ mod tests {
         &[],
         &[Ladder { t: 0.0, beta: 1e-9, top: TOP }],
         &[Ladder { t: 1.0, beta: 0.1, top: TOP }, Ladder { t: 4.0, beta: 1e-4, top: 0.5 }],
-        &[Ladder { t: 6.28, beta: 1e-3, top: TOP }, Ladder { t: 0.001, beta: 2e-3, top: TOP }],
+        &[Ladder { t: 6.2, beta: 1e-3, top: TOP }, Ladder { t: 0.001, beta: 2e-3, top: TOP }],
     ];
 
     #[test]

@@ -41,7 +41,7 @@ fn added_mass(view: &OutlineView<'_, f64>, n: usize, direction: Complex<f64>) ->
                 nodes[i].ddx / (nodes[i].dx * 2.0) * h
             } else {
                 let half = h * (k as f64 - i as f64) * 0.5;
-                let sign = if (k + n - i) % 2 == 0 { 1.0 } else { -1.0 };
+                let sign = if (k + n - i).is_multiple_of(2) { 1.0 } else { -1.0 };
                 (nodes[k].dx / (nodes[k].x - nodes[i].x) - sign * 0.5 * half.cos() / half.sin()) * h
             };
             let g = -weight / f64::PI;
