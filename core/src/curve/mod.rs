@@ -121,6 +121,13 @@ pub struct Outline<R> {
     rungs: usize,
 }
 
+impl<R: Real> Default for Outline<R> {
+    /// The unit circle.
+    fn default() -> Self {
+        Outline { kind: Kind::Ellipse(Ellipse { a: R::one(), b: R::one() }), rungs: 0 }
+    }
+}
+
 impl<R: Real> Outline<R> {
     /// The outline together with the store it was compiled into.
     pub fn view<'a>(&self, store: &'a [R]) -> OutlineView<'a, R> {
