@@ -541,6 +541,9 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(Status::NonFiniteState.into());
         }
         let (p, dp) = split_state(&self.model, self.state.y);
+        let zero = [R::zero(); 3];
+        // A lone swimmer's rates come later, from its impulse.
+        let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
         self.work.place(&self.model, self.head.time, p, dp)?;
         if let Some((a, b)) = swept_contact(&self.model, Poses(self.state.anchor), Poses(self.work.poses)) {
             return Err(Error::new(Status::Contact).at(a).with(b));
