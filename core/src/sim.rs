@@ -125,8 +125,9 @@ struct Motion<'s, 'a, R> {
     model: Model<'a, R>,
     work: &'s mut Work<'a, R>,
     impulse: [R; 3],
-    /// Poses at the last accepted state: no trial state may lie beyond another body.
-    anchor: &'s [R],
+    /// Poses at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
+    /// then no body may lie inside another.
+    anchor: Option<&'s [R]>,
     counters: &'s mut Counters,
 }
 
@@ -155,7 +156,12 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let zero = [R::zero(); 3];
         let dp = if locked { &zero } else { dp };
         self.work.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
-        if let Some((a, b)) = swept_contact(&model, Poses(self.anchor), Poses(self.work.poses)) {
+        let poses = Poses(self.work.poses);
+        let contact = match self.anchor {
+            Some(anchor) => swept_contact(&model, Poses(anchor), poses),
+            None => first_misplaced(&model, poses),
+        };
+        if let Some((a, b)) = contact {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         let n = model.head.plan.free_coordinates;
@@ -182,7 +188,7 @@ macro_rules! motion {
             model: $sim.model,
             work: &mut $sim.work,
             impulse: $sim.head.impulse,
-            anchor: &*$sim.state.anchor,
+            anchor: Some(&*$sim.state.anchor),
             counters: &mut $sim.head.counters,
         }
     };
@@ -373,23 +379,18 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         self.head.fresh = false;
         // The user's integrator may jump: only contact at the state itself counts.
-        let (p, _) = split_state(&self.model, y);
-        let _ = p;
-        copy(self.state.rate, y);
-        let anchor_free = {
-            let mut motion = Motion {
-                model: self.model,
-                work: &mut self.work,
-                impulse: self.head.impulse,
-                anchor: &[],
-                counters: &mut self.head.counters,
-            };
-            motion.rhs(t, y, ydot)
+        let mut motion = Motion {
+            model: self.model,
+            work: &mut self.work,
+            impulse: self.head.impulse,
+            anchor: None,
+            counters: &mut self.head.counters,
         };
-        if anchor_free.is_err() {
+        let outcome = motion.rhs(t, y, ydot);
+        if outcome.is_err() {
             ydot.fill(R::zero());
         }
-        anchor_free
+        outcome
     }
 
     /// One step of the method (for `Adams` one step of its own choice).
