@@ -511,7 +511,9 @@ impl<'a, R: Real> Sim<'a, R> {
         if !self.head.started {
             adams.start(self.head.time, self.state.y, self.state.integrator)?;
             self.head.started = true;
-            // The poses of the state shown are the ones that trial states are measured from.
+            // Trial states are measured from the poses of the state shown; the buffers may hold others.
+            let (p, _) = split_state(&self.model, self.state.y);
+            place_only(&self.model, &mut self.work, self.head.time, p);
             copy(self.state.anchor, self.work.poses);
         }
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
