@@ -333,7 +333,13 @@ impl<'a, R: Real> Sim<'a, R> {
         let before = self.head.time;
         copy(self.state.y, y);
         self.head.time = t;
-        if let Err(e) = self.show() {
+        let mut shown = self.show();
+        if shown.is_ok()
+            && let Some((a, b)) = first_misplaced(&self.model, Poses(self.work.poses))
+        {
+            shown = Err(Error::new(Status::Contact).at(a).with(b));
+        }
+        if let Err(e) = shown {
             copy(self.state.y, self.state.saved);
             self.head.time = before;
             self.show()?;
