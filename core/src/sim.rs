@@ -1,7 +1,7 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 
-use crate::contact::{first_misplaced, swept_contact};
+use crate::contact::{first_misplaced, set_anchor, swept_contact};
 use crate::dynamics::{Counters, Dims, Work};
 use crate::integrate::{Abm4, Adams, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
@@ -105,7 +105,7 @@ buffers! {
         rate: d.state,
         positions: 3 * d.links,
         velocities: 3 * d.links,
-        anchor: 4 * d.boundaries,
+        anchor: 4 * d.boundaries + d.links,
         joints: 2 * d.coordinates,
         commands: d.channels * CHANNEL_LEN,
         integrator: d.work::<R>().unwrap_or(usize::MAX),
@@ -125,7 +125,7 @@ struct Motion<'s, 'a, R> {
     model: Model<'a, R>,
     work: &'s mut Work<'a, R>,
     impulse: [R; 3],
-    /// Poses at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
+    /// Placements at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
     /// then no body may lie inside another.
     anchor: Option<&'s [R]>,
     counters: &'s mut Counters,
@@ -158,7 +158,7 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         self.work.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
         let poses = Poses(self.work.poses);
         let contact = match self.anchor {
-            Some(anchor) => swept_contact(&model, Poses(anchor), poses),
+            Some(anchor) => swept_contact(&model, anchor, poses, self.work.q),
             None => first_misplaced(&model, poses),
         };
         if let Some((a, b)) = contact {
@@ -520,7 +520,7 @@ impl<'a, R: Real> Sim<'a, R> {
             // Trial states are measured from the poses of the state shown; the buffers may hold others.
             let (p, _) = split_state(&self.model, self.state.y);
             place_only(&self.model, &mut self.work, self.head.time, p);
-            copy(self.state.anchor, self.work.poses);
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
         }
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
         self.head.adams = adams;
@@ -528,7 +528,7 @@ impl<'a, R: Real> Sim<'a, R> {
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
         place_only(&self.model, &mut self.work, self.head.adams.time(), p);
-        copy(self.state.anchor, self.work.poses);
+        set_anchor(self.state.anchor, self.work.poses, self.work.q);
         Ok(())
     }
 
@@ -554,7 +554,7 @@ impl<'a, R: Real> Sim<'a, R> {
         // A lone swimmer's rates come later, from its impulse.
         let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
         self.work.place(&self.model, self.head.time, p, dp)?;
-        if let Some((a, b)) = swept_contact(&self.model, Poses(self.state.anchor), Poses(self.work.poses)) {
+        if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         self.show()
@@ -578,7 +578,7 @@ impl<'a, R: Real> Sim<'a, R> {
             put(self.state.joints, 2 * k + 1, *du);
         }
         if !self.head.started {
-            copy(self.state.anchor, self.work.poses);
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
         }
         Ok(())
     }
