@@ -8,7 +8,7 @@ use crate::scene::{CirculationModel, Drive, Joint, JointKind, Link, Mass, Root, 
 use crate::se2::Pose;
 use crate::signal::SignalRecord;
 use crate::status::{Error, Place, Result, Status};
-use crate::workspace::part_mut;
+use crate::workspace::{part, part_mut};
 
 /// Lengths of a model's four arrays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -281,7 +281,7 @@ impl<'a, R: Real> Model<'a, R> {
         Ok(head)
     }
 
-    /// The view of a model in memory that [`Model::init`] filled.
+    /// The view of a model in memory that [`Model::init`] filled (what the arrays hold beyond the requirement is ignored).
     pub fn view(
         head: &'a ModelHead<R>,
         links: &'a [LinkRecord<R>],
@@ -289,7 +289,14 @@ impl<'a, R: Real> Model<'a, R> {
         boundaries: &'a [BoundaryRecord<R>],
         store: &'a [R],
     ) -> Self {
-        Model { head, links, coordinates, boundaries, store }
+        let plan = &head.plan;
+        Model {
+            head,
+            links: part(links, 0, plan.links),
+            coordinates: part(coordinates, 0, plan.free_coordinates + plan.prescribed_coordinates),
+            boundaries: part(boundaries, 0, plan.walls + plan.links),
+            store,
+        }
     }
 }
 
