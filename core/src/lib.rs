@@ -20,6 +20,8 @@ pub(crate) mod lone;
 pub mod lu;
 pub mod model;
 pub(crate) mod nystrom;
+#[cfg(all(test, feature = "alloc"))]
+mod nystrom_test;
 #[cfg(feature = "alloc")]
 pub mod owned;
 pub mod plan;
