@@ -1,8 +1,7 @@
 //! Every bad scene is refused with the status and the place that say what is wrong.
 
 use nekton::scene::{
-    Body, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape, Signal, Wall,
-    Window,
+    Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Scene, Shape, Signal, Wall, Window,
 };
 use nekton::status::{Place, Status};
 use nekton::{Method, ModelBuf, SimBuf};
@@ -317,20 +316,6 @@ fn joints() {
     ] {
         refused_links(&[LINK, Link { joint: Some(joint), ..LINK }], status, Place::Link(0, 1));
     }
-}
-
-#[test]
-fn boundary_formula_is_not_available_with_prescribed_motion() {
-    let wave = [Harmonic { amplitude: 0.1, frequency: 1.0, phase: 0.0, offset: 0.0 }];
-    let motion = Drive::Motion(Signal::Harmonic { terms: &wave, window: None });
-    let linked = [LINK, hinged(LINK, 0, [-1.2, 0.0], [1.2, 0.0], motion)];
-    let one = bodies(&linked);
-    let force = ForceFormula::Boundary;
-    assert_eq!(refusal(&Scene { force, bodies: &one, ..FLUID }).status, Status::Unsupported);
-    let links = [LINK];
-    let root = Root::Prescribed([Signal::Constant(0.0); 3]);
-    let moved = [Body { root, ..body(&links, [0.0; 3], [0.0; 3]) }];
-    assert_eq!(refusal(&Scene { force, bodies: &moved, ..FLUID }).status, Status::Unsupported);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Forces are the derivatives of their energies, found here by differences of sixth order.
 
-use nekton::scene::{Body, ForceFormula, Link, Repulsion, Scene, Shape, Wall};
+use nekton::scene::{Body, Drive, ForceFormula, Harmonic, Link, Repulsion, Root, Scene, Shape, Signal, Wall};
 use nekton_tests::*;
 
 /// Three links without any symmetry, as three bodies.
@@ -90,6 +90,40 @@ fn boundary_formula_agrees_with_the_exact_gradient_when_space_is_resolved() {
         println!("{place}: {:.1e}", difference(&boundary, &exact));
         assert_close(&boundary, &exact, 1e-9);
     });
+}
+
+#[test]
+fn boundary_formula_agrees_with_the_exact_gradient_for_a_swimmer() {
+    // A prescribed and a torque-driven joint, with the root free and with it prescribed.
+    let wave = [Harmonic { amplitude: 0.5, frequency: 2.0, phase: 0.7, offset: 0.1 }];
+    let signal = Signal::Harmonic { terms: &wave, window: None };
+    let one = link(Shape::Ellipse { a: 0.6, b: 0.25 }, 1.2, 128);
+    let torque = Drive::Torque { torque: signal, stiffness: 0.3, damping: 0.1, rest: 0.2, start: [-0.4, 0.8] };
+    let swimmer = [
+        one,
+        hinged(one, 0, [-0.85, 0.0], [0.85, 0.0], Drive::Motion(signal)),
+        hinged(one, 0, [0.85, 0.0], [-0.85, 0.0], torque),
+    ];
+    let obstacles = [wall(Shape::Ellipse { a: 0.3, b: 0.5 }, [0.3, 1.4], 0.4, 128)];
+    let given = Root::Prescribed([signal, Signal::Constant(0.1), signal]);
+    for (name, root) in [("free", Root::Free), ("prescribed", given)] {
+        let bodies = [Body { root, ..body(&swimmer, [0.1, -0.2, 0.2], [0.3, -0.2, 0.4]) }];
+        for obstacles in [&obstacles[..0], &obstacles] {
+            let results = [ForceFormula::ExactGradient, ForceFormula::Boundary].map(|force| {
+                let mut sim = at_start(&Scene { force, obstacles, bodies: &bodies, ..Scene::new(1.3, 0.5) });
+                let mut sim = sim.view();
+                let (mut torques, mut powers) = (vec![f64::NAN; 2], vec![f64::NAN; 2]);
+                sim.joint_torques(&mut torques, &mut powers).unwrap();
+                let christoffel = vector(&mut sim, |sim, out| sim.christoffel(out));
+                [christoffel, vector(&mut sim, |sim, out| sim.accelerations(out)), torques]
+            });
+            let [exact, boundary] = results;
+            for (boundary, exact) in boundary.iter().zip(&exact) {
+                println!("root {name}, {} obstacles: {:.1e}", obstacles.len(), difference(boundary, exact));
+                assert_close(boundary, exact, 1e-9);
+            }
+        }
+    }
 }
 
 #[test]
