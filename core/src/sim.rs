@@ -349,8 +349,8 @@ impl<'a, R: Real> Sim<'a, R> {
         Ok(())
     }
 
-    /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque only
-    /// u counts. The integrator starts anew if it could have looked past the present time.
+    /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque these
+    /// are ν, ν̇ and ν̈. The integrator starts anew if it could have looked past the present time.
     ///
     /// # Errors
     /// `Unsupported` if there is no such channel, `NotFinite`, `BadTable` if the times do not increase.
