@@ -96,11 +96,11 @@ fn rates_under_a_hand_written_rk4_give_the_motion_of_method_rk4() {
             built_in.step().unwrap();
         }
         println!("{:.1e}", difference(&y, built_in.state()));
-        assert_close(&y, built_in.state(), 1e-14);
+        assert_close(&y, built_in.state(), 1e-15);
         // The state is where the positions come from.
         own.set_state(h * f64::from(steps), &y).unwrap();
-        assert_close(own.positions(), built_in.positions(), 1e-14);
-        assert_close(own.velocities(), built_in.velocities(), 1e-14);
+        assert_close(own.positions(), built_in.positions(), 1e-15);
+        assert_close(own.velocities(), built_in.velocities(), 1e-15);
     });
 }
 
@@ -221,7 +221,7 @@ fn channel_moves_a_joint_as_a_table_with_the_same_rows_does() {
         let table = run(Signal::Table(&rows), false, as_torque);
         let channel = run(Signal::Channel, true, as_torque);
         println!("{:.1e}", difference(&channel, &table));
-        assert_close(&channel, &table, 1e-14);
+        assert_close(&channel, &table, 3e-15);
         if !as_torque {
             assert_near(channel[12], 0.4 * 1.0_f64.sin().powi(2), 1e-15);
         }
@@ -331,7 +331,7 @@ fn body_cannot_jump_across_another_within_one_step() {
     let bodies = [near, still];
     let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, methods[0]);
     sim.view().step().unwrap();
-    assert_near(sim.view().positions()[0], 4.0, 1e-12);
+    assert_near(sim.view().positions()[0], 4.0, 1e-14);
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn check_christoffel(nodes: usize) {
         let force = vector(&mut at_start(&scene).view(), |sim, out| sim.christoffel(out));
         let exact = contraction(&scene);
         println!("{place}, {nodes} nodes: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 2e-12);
     });
 }
 
@@ -88,7 +88,7 @@ fn boundary_formula_agrees_with_the_exact_gradient_when_space_is_resolved() {
         let force = |force| vector(&mut at_start(&Scene { force, ..*scene }).view(), |sim, out| sim.christoffel(out));
         let (exact, boundary) = (force(ForceFormula::ExactGradient), force(ForceFormula::Boundary));
         println!("{place}: {:.1e}", difference(&boundary, &exact));
-        assert_close(&boundary, &exact, 1e-9);
+        assert_close(&boundary, &exact, 4e-13);
     });
 }
 
@@ -120,7 +120,7 @@ fn boundary_formula_agrees_with_the_exact_gradient_for_a_swimmer() {
             let [exact, boundary] = results;
             for (boundary, exact) in boundary.iter().zip(&exact) {
                 println!("root {name}, {} obstacles: {:.1e}", obstacles.len(), difference(boundary, exact));
-                assert_close(boundary, exact, 1e-9);
+                assert_close(boundary, exact, 3e-14);
             }
         }
     }
@@ -132,7 +132,7 @@ fn repulsion_is_the_derivative_of_its_potential() {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.repulsion(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().repulsion]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 1e-10);
     });
 }
 
@@ -144,7 +144,7 @@ fn circulation_gradient_is_the_derivative_of_the_circulatory_energy() {
             let force = vector(&mut at_start(scene).view(), |sim, out| sim.circulation_gradient(out));
             let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().circulation]).concat();
             println!("{place}, {nodes} nodes: {:.1e}", difference(&force, &exact));
-            assert_close(&force, &exact, 1e-9);
+            assert_close(&force, &exact, 5e-12);
         });
     }
 }
@@ -155,7 +155,7 @@ fn buoyancy_is_the_derivative_of_its_potential() {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.buoyancy(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().buoyancy]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 5e-13);
     });
 }
 
@@ -177,6 +177,6 @@ fn gyroscopic_matrix_is_a_closed_form() {
             }
         }
         println!("{place}: {:.1e}", defect / largest);
-        assert!(defect <= 1e-9 * largest, "{place}: {defect:e} of {largest:e}");
+        assert!(defect <= 1e-11 * largest, "{place}: {defect:e} of {largest:e}");
     });
 }
