@@ -24,8 +24,10 @@ fn close(computed: &[f64], exact: &[f64], tolerance: f64) {
     assert!(error <= tolerance, "{error:e} > {tolerance:e}");
 }
 
+type Rows = Vec<Vec<f64>>;
+
 /// Re W and Im W of an outline with itself, row by row, and its nodes.
-fn self_block(shape: &Shape<'_, f64>, nodes: usize) -> (Vec<Vec<f64>>, Vec<Vec<f64>>, Vec<Complex<f64>>) {
+fn self_block(shape: &Shape<'_, f64>, nodes: usize) -> (Rows, Rows, Vec<Complex<f64>>) {
     let mut store = vec![0.0; shape.store_len().unwrap() + BoundaryRecord::<f64>::data_len(nodes, true).unwrap()];
     let mut scratch = vec![0.0; shape.scratch_len().unwrap()];
     let store_len = shape.store_len().unwrap();
@@ -82,14 +84,25 @@ fn principal_value_of_a_polynomial_is_i_pi_times_it() {
     }
 }
 
+/// A node in the world.
+#[derive(Clone, Copy)]
+struct Node {
+    point: Complex<f64>,
+    /// h dΓ/ds.
+    tangent: Complex<f64>,
+    /// Of its boundary: sign, first unknown, number of nodes.
+    sign: f64,
+    first: usize,
+    count: usize,
+}
+
 /// A boundary system in the world.
 struct Assembled {
     model: ModelBuf<f64>,
     /// A and Re G, column-major.
     matrix: Vec<f64>,
     regular: Vec<f64>,
-    /// For every node: its point, h dΓ/ds, the sign and first unknown of its boundary, and the number of its nodes.
-    nodes: Vec<(Complex<f64>, Complex<f64>, f64, usize, usize)>,
+    nodes: Vec<Node>,
 }
 
 const POSES: [[f64; 3]; 2] = [[-1.2, 0.3, 0.4], [1.1, -0.6, 1.0]];
@@ -123,7 +136,8 @@ fn assembled(in_tank: bool) -> Assembled {
         };
         put_pose(&mut poses, i, &pose);
         for (x, d) in data.points().zip(data.tangents()) {
-            nodes.push((pose.place(x), pose.turned(d) * data.step, b.sign, b.first, b.nodes));
+            let (point, tangent) = (pose.place(x), pose.turned(d) * data.step);
+            nodes.push(Node { point, tangent, sign: b.sign, first: b.first, count: b.nodes });
         }
     }
     let (mut matrix, mut regular) = (vec![0.0; n * n], vec![0.0; n * n]);
@@ -143,7 +157,7 @@ fn product(columns: &[f64], x: &[f64]) -> Vec<f64> {
 impl Assembled {
     /// What A adds to the double layer: the mean over the tank's nodes, on the tank.
     fn completion(&self, u: &[f64]) -> Vec<f64> {
-        let on_tank = |k: usize| self.nodes[k].2 > 0.0;
+        let on_tank = |k: usize| self.nodes[k].sign > 0.0;
         let count = (0..u.len()).filter(|&k| on_tank(k)).count();
         let mean = (0..u.len()).filter(|&k| on_tank(k)).map(|k| u[k]).sum::<f64>() / count as f64;
         (0..u.len()).map(|k| if on_tank(k) { mean } else { 0.0 }).collect()
@@ -155,7 +169,7 @@ fn double_layer_of_one_is_the_solid_angle() {
     for (in_tank, on_solids) in [(false, 2.0), (true, 0.0)] {
         let a = assembled(in_tank);
         let one = vec![1.0; a.nodes.len()];
-        let exact: Vec<f64> = a.nodes.iter().map(|node| if node.2 > 0.0 { 1.0 } else { on_solids }).collect();
+        let exact: Vec<f64> = a.nodes.iter().map(|node| if node.sign > 0.0 { 1.0 } else { on_solids }).collect();
         close(&product(&a.matrix, &one), &exact, 1e-12);
     }
 }
@@ -175,7 +189,7 @@ fn green_identity_holds_for_harmonic_functions_inside_and_outside() {
     for in_tank in [false, true] {
         let a = assembled(in_tank);
         let (phi, psi): (Vec<f64>, Vec<f64>) =
-            a.nodes.iter().map(|node| analytic(node.0, in_tank)).map(|f| (f.re, f.im)).unzip();
+            a.nodes.iter().map(|node| analytic(node.point, in_tank)).map(|f| (f.re, f.im)).unzip();
         for (u, conjugate, sign) in [(&phi, &psi, 1.0), (&psi, &phi, -1.0)] {
             let mut left = product(&a.matrix, u);
             if in_tank {
@@ -192,11 +206,11 @@ fn green_identity_holds_for_harmonic_functions_inside_and_outside() {
 /// Martensen and Kussmaul.
 fn single_layer(a: &Assembled, flux: &[f64]) -> Vec<f64> {
     let at = |i: usize| {
-        let (x, d, _, first, n) = a.nodes[i];
+        let Node { point: x, tangent: d, first, count: n, .. } = a.nodes[i];
         let half = n / 2;
         let sum: f64 = (0..a.nodes.len())
             .map(|k| {
-                let (y, _, _, other, _) = a.nodes[k];
+                let Node { point: y, first: other, .. } = a.nodes[k];
                 if other != first {
                     return cabs(x - y).ln() * flux[k];
                 }
