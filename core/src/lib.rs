@@ -18,6 +18,8 @@ pub mod grading;
 pub mod integrate;
 pub(crate) mod lone;
 pub mod lu;
+#[cfg(feature = "faer")]
+mod lu_faer;
 pub mod model;
 pub(crate) mod nystrom;
 #[cfg(feature = "alloc")]
