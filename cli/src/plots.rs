@@ -17,13 +17,18 @@ pub const COLOURS: [(u8, u8, u8); 8] = [
     (230, 159, 0),
 ];
 
-const WIDTH: u32 = 860;
-const HEIGHT: u32 = 420;
-const MARGIN: u32 = 14;
-const LEGEND: u32 = 190;
-const LEFT: u32 = 64;
-const BOTTOM: u32 = 46;
-const TITLE: u32 = 34;
+// Lengths are in tenths of a pixel: the backend rounds to whole units, and whole pixels would make lines jagged.
+const FINE: u32 = 10;
+const WIDTH: u32 = 860 * FINE;
+const HEIGHT: u32 = 420 * FINE;
+const MARGIN: u32 = 14 * FINE;
+const LEGEND: u32 = 190 * FINE;
+const LEFT: u32 = 64 * FINE;
+const BOTTOM: u32 = 46 * FINE;
+const TITLE: u32 = 34 * FINE;
+const THIN: u32 = FINE;
+const LINE: u32 = 15;
+const THICK: u32 = 24;
 const GREY: RGBColor = RGBColor(120, 120, 120);
 
 /// A named line.
@@ -49,7 +54,8 @@ pub fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
         ("momentum.svg", over_time("Momentum of bodies and fluid", "momentum", "N s/m; angular: N s", &momenta(record))?),
     ];
     if !record.joints.is_empty() {
-        plots.push(("torque.svg", over_time("Joint torques", "torque (slider: force)", "N; force: N/m", &torques(record))?));
+        let unit = if record.terms.slider { "hinge: N, slider: N/m" } else { "N" };
+        plots.push(("torque.svg", over_time("Joint torques", "torque", unit, &torques(record))?));
     }
     Ok(plots)
 }
@@ -191,7 +197,7 @@ fn trajectories(record: &Record) -> Outcome<String> {
     // Equal scales: the height follows from the shape of the picture within limits, the shorter side is widened.
     let inner = f64::from(WIDTH - LEGEND - LEFT - 2 * MARGIN);
     let frame = f64::from(TITLE + BOTTOM + 2 * MARGIN);
-    let height = (inner * (y.1 - y.0) / (x.1 - x.0)).clamp(260.0, 620.0);
+    let height = (inner * (y.1 - y.0) / (x.1 - x.0)).clamp(260.0 * f64::from(FINE), 620.0 * f64::from(FINE));
     let unit = ((x.1 - x.0) / inner).max((y.1 - y.0) / height);
     let widen = |r: (f64, f64), size: f64| (0.5 * (r.0 + r.1 - size), 0.5 * (r.0 + r.1 + size));
     let title = "Paths of the centres of mass, bodies at start and end";
@@ -213,6 +219,9 @@ fn draw(
         root.fill(&WHITE)?;
         let (left, right) = root.split_horizontally(WIDTH - LEGEND);
         legend(&right, series)?;
+        let (head, left) = left.split_vertically(TITLE);
+        let place = ((LEFT + MARGIN) as i32, MARGIN as i32);
+        head.draw(&Text::new(title, place, ("sans-serif", 16 * FINE)))?;
         let e = exponent(y);
         let unit = 10f64.powi(e);
         // A picture of shapes must not be scaled in one direction only.
@@ -220,7 +229,6 @@ fn draw(
         let e = if shapes.is_empty() { e } else { 0 };
         let mut chart = ChartBuilder::on(&left)
             .margin(MARGIN)
-            .caption(title, ("sans-serif", 17))
             .x_label_area_size(BOTTOM)
             .y_label_area_size(LEFT)
             .build_cartesian_2d(x.0..x.1, y.0 / unit..y.1 / unit)?;
@@ -233,44 +241,53 @@ fn draw(
             .x_label_formatter(&tick)
             .y_label_formatter(&tick)
             .light_line_style(TRANSPARENT)
-            .bold_line_style(RGBColor(225, 225, 225))
-            .axis_style(RGBColor(90, 90, 90))
-            .label_style(("sans-serif", 13))
-            .axis_desc_style(("sans-serif", 14))
+            .bold_line_style(RGBColor(225, 225, 225).stroke_width(THIN))
+            .axis_style(RGBColor(90, 90, 90).stroke_width(THIN))
+            .set_all_tick_mark_size(5 * FINE)
+            .label_style(("sans-serif", 13 * FINE))
+            .axis_desc_style(("sans-serif", 14 * FINE))
             .draw()?;
         for (outline, colour) in shapes {
             let points: Vec<(f64, f64)> = outline.iter().map(|p| (p[0], p[1])).collect();
             chart.draw_series([Polygon::new(points.clone(), colour.mix(0.12))])?;
             let closed = points.iter().chain(points.first()).copied();
-            chart.draw_series([PathElement::new(closed.collect::<Vec<_>>(), colour.mix(0.8))])?;
+            chart.draw_series([PathElement::new(closed.collect::<Vec<_>>(), colour.mix(0.8).stroke_width(THIN))])?;
         }
         for s in series {
-            let style = s.colour.stroke_width(if s.thick { 2 } else { 1 });
+            let style = s.colour.stroke_width(if s.thick { THICK } else { LINE });
             let scaled: Vec<(f64, f64)> = s.points.iter().map(|p| (p.0, p.1 / unit)).collect();
             chart.draw_series([PathElement::new(scaled, style)])?;
         }
         root.present()?;
     }
-    Ok(text)
+    Ok(in_pixels(&text, height))
 }
 
 /// Names beside the picture, so that they never cover a line.
 fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, series: &[Series]) -> Outcome<()> {
-    let (_, height) = area.dim_in_pixel();
-    let room = height as i32 - TITLE as i32 - 20;
-    let step = (room / series.len().max(1) as i32).clamp(11, 20);
+    let height = area.dim_in_pixel().1 as i32;
+    let fine = FINE as i32;
+    let room = height - TITLE as i32 - 20 * fine;
+    let step = (room / series.len().max(1) as i32).clamp(11 * fine, 20 * fine);
     for (k, s) in series.iter().enumerate() {
-        let y = TITLE as i32 + MARGIN as i32 + step * k as i32;
-        if y + step > height as i32 {
+        let y = (TITLE + MARGIN) as i32 + step * k as i32;
+        if y + step > height {
             break;
         }
-        area.draw(&PathElement::new(vec![(0, y), (22, y)], s.colour.stroke_width(if s.thick { 3 } else { 2 })))?;
+        let style = s.colour.stroke_width(if s.thick { THICK } else { LINE });
+        area.draw(&PathElement::new(vec![(0, y), (22 * fine, y)], style))?;
         let name: String = if s.name.chars().count() > 24 {
             s.name.chars().take(23).chain(['…']).collect()
         } else {
             s.name.clone()
         };
-        area.draw(&Text::new(name, (28, y - 7), ("sans-serif", 13)))?;
+        area.draw(&Text::new(name, (28 * fine, y - 7 * fine), ("sans-serif", 13 * FINE)))?;
     }
     Ok(())
+}
+
+/// Shown in whole pixels, drawn in tenths.
+fn in_pixels(svg: &str, height: u32) -> String {
+    let fine = format!("width=\"{WIDTH}\" height=\"{height}\"");
+    svg.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", WIDTH / FINE, height / FINE), 1)
 }

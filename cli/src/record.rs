@@ -1,7 +1,5 @@
 //! What a run leaves behind, in the user's order of links.
 
-use nekton::status::Place;
-
 /// Everything the tables, plots and the report are made from.
 #[derive(Debug, Default)]
 pub struct Record {
@@ -44,17 +42,19 @@ pub struct Terms {
     pub repulsion: bool,
     /// Circulation.
     pub circulation: bool,
+    /// Some joint slides, so its torque is a force.
+    pub slider: bool,
 }
 
 /// A gap.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Nearest {
     /// Distance.
     pub distance: f64,
     /// Time.
     pub time: f64,
-    /// Between what.
-    pub between: Option<(Place, Place)>,
+    /// Between what; "" if unknown.
+    pub between: String,
 }
 
 /// The state and everything derived from it at one time.

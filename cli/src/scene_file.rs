@@ -145,6 +145,11 @@ impl SceneFile {
         self.bodies.iter().flat_map(|b| b.links.iter().map(move |l| format!("{}.{}", b.name, l.name))).collect()
     }
 
+    /// Whether some joint is a slider.
+    pub fn has_slider(&self) -> bool {
+        self.bodies.iter().flat_map(|b| &b.links).any(|l| l.joint.as_ref().is_some_and(|j| j.is_slider()))
+    }
+
     /// For every link in the user's order, its index in the core's order.
     pub fn core_order(&self) -> Vec<usize> {
         let mut first = 0;
@@ -205,11 +210,20 @@ impl SceneFile {
         text
     }
 
+    /// Line of what puts a boundary where it is.
+    fn line_of_position(&self, place: Place) -> usize {
+        let lines = self.lines_of(place);
+        let body = match place {
+            Place::Link(b, _) => self.bodies.get(b).and_then(|b| b.lines.find(&["position"])),
+            _ => None,
+        };
+        lines.find(&["hinge", "slider", "position"]).or(body).or(lines.find(&["shape"])).unwrap_or(lines.own)
+    }
+
     /// An error of the core as a complaint about the line that caused it.
     pub fn problem(&self, error: &Error) -> Problem {
         let lines = self.lines_of(error.place);
         let keys: &[&str] = match error.status {
-            Status::Overlap | Status::OutsideTank | Status::Contact => &["position", "hinge", "slider", "shape"],
             Status::BadShape | Status::SelfIntersection => &["shape"],
             Status::NodeCount => &["nodes", "shape"],
             Status::BadParent => &["parent"],
@@ -219,11 +233,14 @@ impl SceneFile {
             Status::BadStep => &["step", "integrator"],
             _ => &[],
         };
-        let line = lines.find(&[error.what]).or_else(|| lines.find(keys)).unwrap_or(lines.own);
+        let line = match error.status {
+            Status::Overlap | Status::OutsideTank | Status::Contact => self.line_of_position(error.place),
+            _ => lines.find(&[error.what]).or_else(|| lines.find(keys)).unwrap_or(lines.own),
+        };
         let hint = match error.status {
-            Status::Overlap => {
-                let other = error.other.map(|o| self.lines_of(o)).map(|l| l.find(keys).unwrap_or(l.own));
-                other.map(|l| format!("move them apart; the other is on line {l}"))
+            Status::Overlap | Status::Contact => {
+                let other = error.other.map(|o| self.line_of_position(o));
+                other.map(|l| format!("move them apart; the other is placed on line {l}"))
             }
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
             Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
@@ -326,7 +343,7 @@ fn read_run(section: &Section<'_>) -> Outcome<RunDef> {
     let duration = section.need("duration")?.positive()?;
     let output_interval = section.or("output_interval", duration / DEFAULT_ROWS, Item::positive)?;
     if duration / output_interval > MOST_ROWS {
-        let message = format!("{} rows would be written", (duration / output_interval).round());
+        let message = format!("makes {} rows", (duration / output_interval).round());
         return Err(section.need("output_interval")?.problem(message).hint("make output_interval larger"));
     }
     let integrator = section.or("integrator", Integrator::Adams { tolerance: DEFAULT_TOLERANCE }, |item| {

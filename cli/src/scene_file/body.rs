@@ -2,7 +2,7 @@
 
 use nekton::scene::{Drive, Joint, JointKind, Link, Mass, Root};
 
-use super::reader::{Item, Lines, Outcome, Problem, Section, suggest};
+use super::reader::{Item, Lines, Outcome, Section, suggest};
 use super::shape::{ShapeDef, nodes};
 use super::signal::SignalDef;
 
@@ -223,7 +223,7 @@ impl LinkDef {
         let shape = ShapeDef::read(&section.need("shape")?)?;
         Ok(LinkDef {
             nodes: nodes(section.get("nodes"), &shape)?,
-            mass: mass(section, &name)?,
+            mass: mass(section)?,
             circulation: section.or("circulation", 0.0, Item::number)?,
             joint: JointDef::read(section, index, names)?,
             lines: section.lines(&[]),
@@ -249,22 +249,29 @@ impl LinkDef {
     }
 }
 
-fn mass(section: &Section<'_>, name: &str) -> Outcome<Mass<f64>> {
+fn mass(section: &Section<'_>) -> Outcome<Mass<f64>> {
     if let Some(density) = section.get("density") {
         if let Some(other) = ["mass", "inertia", "centre_of_mass"].iter().find_map(|k| section.get(k)) {
             return Err(other.problem("cannot be given together with `density`"));
         }
         return density.not_negative().map(Mass::Density);
     }
-    let missing = |p: Problem| p.hint(format!("link `{name}` needs either `density` or `mass` and `inertia`"));
+    if ["mass", "inertia", "centre_of_mass"].iter().all(|k| section.get(k).is_none()) {
+        return section.need("density").map_err(|p| p.hint("or `mass` and `inertia`")).map(|_| Mass::Density(0.0));
+    }
     Ok(Mass::Given {
-        mass: section.need("mass").map_err(missing)?.not_negative()?,
-        inertia: section.need("inertia").map_err(missing)?.not_negative()?,
+        mass: section.need("mass")?.not_negative()?,
+        inertia: section.need("inertia")?.not_negative()?,
         centre_of_mass: section.or("centre_of_mass", [0.0; 2], Item::pair)?,
     })
 }
 
 impl JointDef {
+    /// Whether it slides.
+    pub fn is_slider(&self) -> bool {
+        matches!(self.kind, JointKind::Slider { .. })
+    }
+
     fn read(section: &Section<'_>, index: usize, names: &[(String, usize)]) -> Outcome<Option<Self>> {
         let Some(parent) = section.get("parent") else {
             return match ["hinge", "slider", "motion"].iter().find_map(|k| section.get(k)) {

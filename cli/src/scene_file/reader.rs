@@ -59,6 +59,7 @@ pub fn suggest(word: &str, allowed: &[&str]) -> Option<String> {
     let near = allowed
         .iter()
         .map(|a| (strsim::damerau_levenshtein(&word.to_lowercase(), &a.to_lowercase()), *a))
+        .filter(|(d, a)| *d < a.len().max(word.len()))
         .filter(|(d, a)| *d <= 1 + a.len().max(word.len()) / 4 || (word.len() > 2 && a.starts_with(word)))
         .min_by_key(|(d, _)| *d);
     match near {
@@ -196,7 +197,10 @@ impl<'t> Item<'t> {
     }
     /// Elements of a list.
     pub fn list(&self) -> Outcome<Vec<Item<'t>>> {
-        let array = self.value.as_array().ok_or_else(|| self.wrong("a list"))?;
+        let array = self.value.as_array().ok_or_else(|| {
+            let brackets = self.value.is_table().then(|| format!("write [[{}]] with two brackets", self.key));
+            self.wrong("a list").maybe_hint(brackets)
+        })?;
         Ok(array
             .iter()
             .map(|v| Item {
