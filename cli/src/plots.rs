@@ -51,7 +51,10 @@ pub fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
     let mut plots = vec![
         ("trajectories.svg", trajectories(record)?),
         ("energy.svg", over_time("Energy", "energy", "J/m", &energies(record))?),
-        ("momentum.svg", over_time("Momentum of bodies and fluid", "momentum", "N s/m; angular: N s", &momenta(record))?),
+        (
+            "momentum.svg",
+            over_time("Momentum of bodies and fluid", "momentum", "N s/m; angular: N s", &momenta(record))?,
+        ),
     ];
     if !record.joints.is_empty() {
         let unit = if record.terms.slider { "hinge: N, slider: N/m" } else { "N" };
@@ -122,15 +125,20 @@ fn torques(record: &Record) -> Vec<Series> {
 
 /// Smallest interval that holds all values, a little enlarged.
 fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) = values
-        .filter(|v| v.is_finite())
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    let (low, high) =
+        values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if low > high {
         return (-1.0, 1.0);
     }
     let size = high - low;
     let flat = size <= 1e-12 * low.abs().max(high.abs());
-    let pad = if !flat { 0.06 * size } else if low == 0.0 { 1.0 } else { 0.1 * low.abs() };
+    let pad = if !flat {
+        0.06 * size
+    } else if low == 0.0 {
+        1.0
+    } else {
+        0.1 * low.abs()
+    };
     (low - pad, high + pad)
 }
 
@@ -276,11 +284,8 @@ fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, series: &[Series]) -> Outco
         }
         let style = s.colour.stroke_width(if s.thick { THICK } else { LINE });
         area.draw(&PathElement::new(vec![(0, y), (22 * fine, y)], style))?;
-        let name: String = if s.name.chars().count() > 24 {
-            s.name.chars().take(23).chain(['…']).collect()
-        } else {
-            s.name.clone()
-        };
+        let name: String =
+            if s.name.chars().count() > 24 { s.name.chars().take(23).chain(['…']).collect() } else { s.name.clone() };
         area.draw(&Text::new(name, (28 * fine, y - 7 * fine), ("sans-serif", 13 * FINE)))?;
     }
     Ok(())

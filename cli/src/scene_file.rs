@@ -312,7 +312,9 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         bodies.push(body);
     }
     if bodies.is_empty() {
-        return Err(Problem::file(&source.path, "the scene has no body").hint("add [[body]] with one or more [[body.link]]"));
+        return Err(
+            Problem::file(&source.path, "the scene has no body").hint("add [[body]] with one or more [[body.link]]")
+        );
     }
     let run = top.get("run").map(|r| r.section("[run]", RUN)).transpose()?;
     let mut force = ForceFormula::ExactGradient;

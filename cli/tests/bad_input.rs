@@ -19,7 +19,10 @@ fn refuses_in(place: &Place, expected: &str) {
 
 #[test]
 fn unknown_key() {
-    refuses(&changed("velocity", "velocty"), "scene.toml:7: unknown key `velocty` in [[body]] 1 (did you mean `velocity`?)");
+    refuses(
+        &changed("velocity", "velocty"),
+        "scene.toml:7: unknown key `velocty` in [[body]] 1 (did you mean `velocity`?)",
+    );
     refuses(&changed("[fluid]", "[fluids]"), "scene.toml:1: unknown key `fluids` in the scene (did you mean `fluid`?)");
     refuses(
         &changed("parent = [-1.2", "parnt = [-1.2"),
@@ -37,7 +40,10 @@ fn unknown_key() {
 
 #[test]
 fn wrong_type() {
-    refuses(&changed("density = 1.0", "density = \"1.0\""), "scene.toml:2: `density` must be a number, but is a string");
+    refuses(
+        &changed("density = 1.0", "density = \"1.0\""),
+        "scene.toml:2: `density` must be a number, but is a string",
+    );
     refuses(&changed("nodes = 32", "nodes = 32.0"), "scene.toml:12: `nodes` must be a whole number, but is a number");
     refuses(&changed("[0.0, 0.0]", "[0.0]"), "scene.toml:6: `position` must have 2 numbers, but has 1");
     refuses(&changed("[0.0, 0.0]", "[0.0, true]"), "scene.toml:6: `position` must be a number, but is true or false");
@@ -142,8 +148,14 @@ fn values_out_of_range() {
     refuses(&changed("density = 1.0", "density = -1"), "scene.toml:2: `density` must not be negative, but is -1");
     refuses(&changed("density = 2.0", "density = nan"), "scene.toml:28: `density` must be finite, but is nan");
     refuses(&changed("[0.0, 3.0]", "[0.0, inf]"), "scene.toml:24: `position` must be finite, but is inf");
-    refuses(&changed("nodes = 32", "nodes = 0"), "scene.toml:12: `nodes` must be even and at least 8, but is 0 (try 8)");
-    refuses(&changed("nodes = 32", "nodes = 31"), "scene.toml:12: `nodes` must be even and at least 8, but is 31 (try 32)");
+    refuses(
+        &changed("nodes = 32", "nodes = 0"),
+        "scene.toml:12: `nodes` must be even and at least 8, but is 0 (try 8)",
+    );
+    refuses(
+        &changed("nodes = 32", "nodes = 31"),
+        "scene.toml:12: `nodes` must be even and at least 8, but is 31 (try 32)",
+    );
     refuses(
         &changed("nodes = 32", "nodes = -32"),
         "scene.toml:12: `nodes` must be a whole number that is not negative, but is -32",
@@ -214,11 +226,7 @@ fn unreadable_table() {
     let scene = changed("motion = { harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }", table);
     let place = Place::new(&scene);
     let done = place.run();
-    assert!(
-        done.err.starts_with("scene.toml:20: `table` names stroke.csv, which cannot be read: "),
-        "{}",
-        done.err
-    );
+    assert!(done.err.starts_with("scene.toml:20: `table` names stroke.csv, which cannot be read: "), "{}", done.err);
     assert_eq!((done.code, done.err.lines().count()), (Some(2), 1));
 
     let bad = |text: &str, expected: &str| {

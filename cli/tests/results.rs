@@ -81,9 +81,7 @@ fn links_may_be_listed_in_any_order() {
     let (before, rest) = GOOD.split_once("[[body.link]]\nname = \"head\"").unwrap();
     let (head, rest) = rest.split_once("[[body.link]]\n").unwrap();
     let (tail, rest) = rest.split_once("[[body]]").unwrap();
-    let place = Place::new(&format!(
-        "{before}[[body.link]]\n{tail}[[body.link]]\nname = \"head\"{head}[[body]]{rest}"
-    ));
+    let place = Place::new(&format!("{before}[[body.link]]\n{tail}[[body.link]]\nname = \"head\"{head}[[body]]{rest}"));
     assert_eq!(place.run().code, Some(0));
     let swapped = place.read("results/trajectory.csv");
     assert!(swapped.starts_with("t,fish.tail.x,"));
@@ -140,7 +138,9 @@ fn plots_name_axes_units_and_lines() {
 fn a_second_run_replaces_the_first_and_leaves_other_files_alone() {
     let place = finished();
     place.put("results/notes.txt", "mine");
-    let without_joint = GOOD.replace("parent = \"head\"\n", "").replace("[[body.link]]\nname = \"tail\"", "[[body]]\nname = \"tail\"\nposition = [9, 9]\n[[body.link]]");
+    let without_joint = GOOD
+        .replace("parent = \"head\"\n", "")
+        .replace("[[body.link]]\nname = \"tail\"", "[[body]]\nname = \"tail\"\nposition = [9, 9]\n[[body.link]]");
     let drop = |line: &&str| !line.starts_with("hinge") && !line.starts_with("motion");
     place.put("scene.toml", without_joint.lines().filter(drop).collect::<Vec<_>>().join("\n"));
     let done = place.run();
@@ -161,10 +161,7 @@ fn folders_on_the_way_are_made() {
 
 #[test]
 fn tables_and_outlines_are_read_relative_to_the_scene() {
-    let scene = changed(
-        "{ harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }",
-        "{ table = \"stroke.csv\" }",
-    );
+    let scene = changed("{ harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }", "{ table = \"stroke.csv\" }");
     let place = Place::new(&scene.replace("{ ellipse = [0.8, 0.3] }", "{ curve = \"outline.csv\" }"));
     let times = || (0..=20).map(|k| 0.05 * f64::from(k));
     let rows: String = times().map(|t| format!("{t},{}\n", 0.3 * (2.0 * t).sin())).collect();

@@ -181,7 +181,9 @@ fn order(name: &str, body: &Section<'_>, sections: &[Section<'_>], links: &[Link
             let (a, b) = (&links[*first].name, &links[*second].name);
             return Err(sections[*second]
                 .problem(format!("link `{b}` of body `{name}` has no parent, and neither has link `{a}`"))
-                .hint(format!("only one link of a body hangs on nothing; did you mean `parent = \"{a}\"` with a hinge?")));
+                .hint(format!(
+                    "only one link of a body hangs on nothing; did you mean `parent = \"{a}\"` with a hinge?"
+                )));
         }
         [] => {
             let ring = ring(links, 0);
@@ -326,7 +328,11 @@ impl DriveDef {
             _ => &["stiffness", "damping", "rest", "start"],
         };
         if let Some(other) = strangers.iter().find_map(|k| section.get(k)) {
-            let hint = if other.key == "window" { "goes inside: torque = { harmonic = …, window = … }" } else { "they go with `torque`" };
+            let hint = if other.key == "window" {
+                "goes inside: torque = { harmonic = …, window = … }"
+            } else {
+                "they go with `torque`"
+            };
             return Err(other.problem(format!("does not go with `{kind}`")).hint(hint));
         }
         Ok(match kind {

@@ -269,7 +269,12 @@ impl<'t> Section<'t> {
     /// The value of a key, if it is there.
     pub fn get(&self, key: &str) -> Option<Item<'t>> {
         let (key, value) = self.table.iter().find(|(k, _)| &**k.get_ref() == key)?;
-        Some(Item { source: self.source, line: self.source.line_of(key.span()), key: key.get_ref(), value: value.get_ref() })
+        Some(Item {
+            source: self.source,
+            line: self.source.line_of(key.span()),
+            key: key.get_ref(),
+            value: value.get_ref(),
+        })
     }
     /// The value of a key that must be there.
     pub fn need(&self, key: &str) -> Outcome<Item<'t>> {
@@ -282,14 +287,13 @@ impl<'t> Section<'t> {
     /// The one key of several that is there.
     pub fn one_of(&self, keys: &[&'static str]) -> Outcome<(&'static str, Item<'t>)> {
         let mut found = keys.iter().filter_map(|k| Some((*k, self.get(k)?)));
-        let first = found.next().ok_or_else(|| {
-            self.problem(format!("{} needs one of: {}", self.title, keys.join(", ")))
-        })?;
+        let first =
+            found.next().ok_or_else(|| self.problem(format!("{} needs one of: {}", self.title, keys.join(", "))))?;
         match found.next() {
             None => Ok(first),
-            Some((key, item)) => {
-                Err(self.source.problem(item.line, format!("{} cannot have both `{}` and `{key}`", self.title, first.0)))
-            }
+            Some((key, item)) => Err(self
+                .source
+                .problem(item.line, format!("{} cannot have both `{}` and `{key}`", self.title, first.0))),
         }
     }
     /// A complaint about the table.

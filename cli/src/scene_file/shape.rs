@@ -61,7 +61,8 @@ impl ShapeDef {
                 ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
             }
             _ => {
-                let points = if kind == "curve" && value.is_text() { table::outline(&value)? } else { value.points()? };
+                let points =
+                    if kind == "curve" && value.is_text() { table::outline(&value)? } else { value.points()? };
                 if points.len() < 3 {
                     return Err(value.problem(format!("needs at least 3 points, but has {}", points.len())));
                 }

@@ -45,7 +45,8 @@ fn read(path: &Path, from: &Item<'_>, allowed: &[&str]) -> Outcome<Columns> {
             .collect::<Outcome<_>>()?;
         rows.push((line, row));
     }
-    let names = names.ok_or_else(|| Problem::file(path, format!("is empty; expected a header {}", allowed.join(","))))?;
+    let names =
+        names.ok_or_else(|| Problem::file(path, format!("is empty; expected a header {}", allowed.join(","))))?;
     if rows.is_empty() {
         return Err(Problem::file(path, "has a header but no rows"));
     }
