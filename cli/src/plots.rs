@@ -63,64 +63,45 @@ pub fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
     Ok(plots)
 }
 
-fn lines(record: &Record, names: &[(String, &dyn Fn(&Row) -> f64)]) -> Vec<Series> {
-    names
-        .iter()
-        .enumerate()
-        .map(|(k, (name, value))| Series {
-            name: name.clone(),
-            points: record.rows.iter().map(|r| (r.t, value(r))).filter(|p| p.1.is_finite()).collect(),
-            colour: colour(k),
-            thick: false,
-        })
-        .collect()
+/// A quantity over time.
+fn line(record: &Record, name: &str, colour: RGBColor, value: impl Fn(&Row) -> f64) -> Series {
+    let points = record.rows.iter().map(|r| (r.t, value(r))).filter(|p| p.1.is_finite()).collect();
+    Series { name: name.to_owned(), points, colour, thick: false }
 }
 
 fn energies(record: &Record) -> Vec<Series> {
-    let mut names: Vec<(String, &dyn Fn(&Row) -> f64)> = vec![("kinetic, bodies".into(), &|r| r.energy.kinetic_bodies)];
+    let mut series = vec![line(record, "kinetic, bodies", colour(0), |r| r.energy.kinetic_bodies)];
     if record.terms.fluid {
-        names.push(("kinetic, fluid".into(), &|r| r.energy.kinetic_fluid));
+        series.push(line(record, "kinetic, fluid", colour(1), |r| r.energy.kinetic_fluid));
     }
     if record.terms.gravity {
-        names.push(("buoyancy".into(), &|r| r.energy.buoyancy));
+        series.push(line(record, "buoyancy", colour(2), |r| r.energy.buoyancy));
     }
     if record.terms.repulsion {
-        names.push(("repulsion".into(), &|r| r.energy.repulsion));
+        series.push(line(record, "repulsion", colour(3), |r| r.energy.repulsion));
     }
     if record.terms.circulation {
-        names.push(("circulation".into(), &|r| r.energy.circulation));
+        series.push(line(record, "circulation", colour(4), |r| r.energy.circulation));
     }
     if !record.joints.is_empty() {
-        names.push(("work of the joints".into(), &|r| r.energy.work));
+        series.push(line(record, "work of the joints", colour(5), |r| r.energy.work));
     }
-    let mut series = lines(record, &names);
-    let total: &dyn Fn(&Row) -> f64 = &|r| r.energy.total;
-    series.extend(lines(record, &[("total".into(), total)]).into_iter().map(|s| Series {
-        colour: RGBColor(0, 0, 0),
-        thick: true,
-        ..s
-    }));
+    let total = line(record, "total", RGBColor(0, 0, 0), |r| r.energy.total);
+    series.push(Series { thick: true, ..total });
     series
 }
 
 fn momenta(record: &Record) -> Vec<Series> {
-    lines(
-        record,
-        &[
-            ("along x".into(), &|r: &Row| r.impulse[0]),
-            ("along y".into(), &|r: &Row| r.impulse[1]),
-            ("angular, about 0".into(), &|r: &Row| r.impulse[2]),
-        ],
-    )
+    vec![
+        line(record, "along x", colour(0), |r| r.impulse[0]),
+        line(record, "along y", colour(1), |r| r.impulse[1]),
+        line(record, "angular, about 0", colour(2), |r| r.impulse[2]),
+    ]
 }
 
 fn torques(record: &Record) -> Vec<Series> {
-    let values: Vec<Box<dyn Fn(&Row) -> f64>> = (0..record.joints.len())
-        .map(|k| Box::new(move |r: &Row| r.torque.get(k).map_or(f64::NAN, |t| t[0])) as Box<dyn Fn(&Row) -> f64>)
-        .collect();
-    let names: Vec<(String, &dyn Fn(&Row) -> f64)> =
-        record.joints.iter().cloned().zip(values.iter().map(|v| v.as_ref())).collect();
-    lines(record, &names)
+    let torque = |k: usize| move |r: &Row| r.torque.get(k).map_or(f64::NAN, |t| t[0]);
+    record.joints.iter().enumerate().map(|(k, name)| line(record, name, colour(k), torque(k))).collect()
 }
 
 /// Smallest interval that holds all values, a little enlarged.

@@ -182,6 +182,21 @@ fn tables_and_outlines_are_read_relative_to_the_scene() {
 }
 
 #[test]
+fn a_run_that_ends_in_contact_keeps_its_results_and_says_why() {
+    let place = Place::new(&changed("amplitude = 0.3", "amplitude = 2.8").replace("duration = 0.5", "duration = 2.0"));
+    let done = place.run();
+    assert_eq!(done.code, Some(3), "{}", done.err);
+    assert!(done.err.starts_with("stopped at t = ") && done.err.contains("contact"), "{}", done.err);
+    assert_eq!(done.err.lines().count(), 1);
+    let rows = rows(&place.read("results/trajectory.csv"));
+    let last = rows.last().unwrap()[0];
+    assert!(rows.len() > 3 && last < 2.0, "{last}");
+    assert!(rows.iter().flatten().all(|x| x.is_finite()));
+    let report = place.read("results/report.html");
+    assert!(report.contains("The run stopped early: t = ") && !report.contains("reached its end"));
+}
+
+#[test]
 fn evaluate_prints_every_documented_key() {
     let place = Place::new(GOOD);
     let done = place.nekton(&["evaluate", "scene.toml", "--json"]);

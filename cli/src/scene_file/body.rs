@@ -108,10 +108,8 @@ impl BodyDef {
         let position = section.or("position", [0.0; 2], Item::pair)?;
         let velocity = section.or("velocity", [0.0; 2], Item::pair)?;
         let root = section.get("root").map(|r| read_root(&r)).transpose()?;
-        if root.is_some() {
-            if let Some(v) = section.get("velocity").or_else(|| section.get("angular_velocity")) {
-                return Err(v.problem("cannot be given where `root` prescribes the motion"));
-            }
+        if let (Some(_), Some(v)) = (&root, section.get("velocity").or_else(|| section.get("angular_velocity"))) {
+            return Err(v.problem("cannot be given where `root` prescribes the motion"));
         }
         let mut links: Vec<LinkDef> = Vec::new();
         let items = section.need("link").map_err(|p| p.hint("a body has one or more [[body.link]]"))?.list()?;
