@@ -152,13 +152,16 @@ impl<'t> Item<'t> {
     }
     /// A finite number.
     pub fn number(&self) -> Outcome<f64> {
-        let text = match self.value {
-            DeValue::Float(f) => f.as_str(),
-            DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+        let (text, x) = match self.value {
+            DeValue::Float(f) => (f.as_str(), f.as_str().parse().ok()),
+            DeValue::Integer(i) if i.radix() == 10 => (i.as_str(), i.as_str().parse().ok()),
+            DeValue::Integer(i) => (i.as_str(), u64::from_str_radix(i.as_str(), i.radix()).ok().map(|n| n as f64)),
             _ => return Err(self.wrong("a number")),
         };
-        let x: f64 = text.parse().map_err(|_| self.wrong("a number"))?;
-        if x.is_finite() { Ok(x) } else { Err(self.problem(format!("must be finite, but is {text}"))) }
+        match x {
+            Some(x) if f64::is_finite(x) => Ok(x),
+            _ => Err(self.problem(format!("must be finite, but is {text}"))),
+        }
     }
     /// A finite number > 0.
     pub fn positive(&self) -> Outcome<f64> {
