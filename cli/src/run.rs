@@ -26,10 +26,11 @@ pub fn run(path: &Path, folder: &Path) -> Result<Ending, Problem> {
     let plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
     let mut sim = setup.simulate(plan.integrator)?;
+    let mut view = sim.view().map_err(|e| setup.problem(&e))?;
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
-    let stopped = integrate(&setup, &plan, &mut sim.view(), &mut record)?;
-    figures(&mut sim.view(), &mut record);
+    let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
+    figures(&mut view, &mut record);
     let time = clock.elapsed();
     record.stopped = stopped.as_ref().map(|(t, e)| format!("t = {t:.6} s: {}", setup.scene.describe(e)));
 
@@ -103,7 +104,7 @@ fn integrate(
 ) -> Result<Option<(f64, Error)>, Problem> {
     let bar = progress(run.duration);
     let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
-    keep(setup, sim, record, row);
+    keep(record, row);
     let mut stopped = None;
     // The tolerance keeps a last row that would follow the one before by rounding only from being written.
     let rows = (run.duration / run.output_interval - 1e-9).ceil().max(1.0) as usize;
@@ -115,8 +116,8 @@ fn integrate(
         };
         match step.and_then(|()| sample(setup, sim)) {
             Ok(row) => {
-                show(&bar, run.duration, &row);
-                keep(setup, sim, record, row);
+                show(&bar, run.duration, &row.0);
+                keep(record, row);
             }
             Err(e) => {
                 stopped = Some((sim.time(), e));
@@ -128,7 +129,7 @@ fn integrate(
         // The last good state may lie between two output times.
         let later = record.rows.last().is_some_and(|r| sim.time() > r.t);
         if let (true, Ok(row)) = (later, sample(setup, sim)) {
-            keep(setup, sim, record, row);
+            keep(record, row);
         }
         bar.abandon();
     } else {
@@ -155,8 +156,8 @@ fn show(bar: &ProgressBar, duration: f64, row: &Row) {
     bar.set_position((PROGRESS as f64 * row.t / duration) as u64);
 }
 
-/// The present state and what follows from it, in the user's order.
-fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<Row, Error> {
+/// The present state and what follows from it, in the user's order; between what the smallest gap is.
+fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error> {
     let triple = |values: &[f64], core: usize| -> [f64; 3] {
         let mut out = [f64::NAN; 3];
         out.iter_mut().zip(values.iter().skip(3 * core)).for_each(|(o, v)| *o = *v);
@@ -169,8 +170,11 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<Row, Error> {
     if !torque.is_empty() {
         sim.joint_torques(&mut torque, &mut power)?;
     }
+    let gap = sim.gap();
+    let name = |place| setup.scene.name_of(place);
+    let between = gap.between.map_or(String::new(), |(a, b)| format!("{} and {}", name(a), name(b)));
     let pick = |core: &usize| [torque.get(*core), power.get(*core)].map(|x| x.copied().unwrap_or(f64::NAN));
-    Ok(Row {
+    let row = Row {
         t: sim.time(),
         pose: setup.links.iter().map(|core| triple(sim.positions(), *core)).collect(),
         velocity: setup.links.iter().map(|core| triple(sim.velocities(), *core)).collect(),
@@ -184,16 +188,15 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<Row, Error> {
             work: energy.work,
         },
         impulse,
-        gap: sim.gap().distance,
+        gap: gap.distance,
         torque: setup.joints.iter().map(|(core, _)| pick(core)).collect(),
-    })
+    };
+    Ok((row, between))
 }
 
-fn keep(setup: &Setup, sim: &Sim<'_, f64>, record: &mut Record, row: Row) {
+fn keep(record: &mut Record, (row, between): (Row, String)) {
     let nearer = record.smallest.as_ref().is_none_or(|s| row.gap < s.distance);
     if row.gap.is_finite() && nearer {
-        let name = |p| setup.scene.name_of(p);
-        let between = sim.gap().between.map_or(String::new(), |(a, b)| format!("{} and {}", name(a), name(b)));
         record.smallest = Some(Nearest { distance: row.gap, time: row.t, between });
     }
     record.rows.push(row);
