@@ -222,7 +222,7 @@ pub struct Window<R> {
 }
 
 /// An outline.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape<'a, R> {
     /// Semi-axes along x and y.
     Ellipse {

@@ -55,10 +55,19 @@ pub(crate) fn copy<T: Copy>(to: &mut [T], from: &[T]) {
     }
 }
 
-/// Scalar product.
+/// Scalar product, summed in eight lanes so that it vectorizes.
 #[inline]
 pub(crate) fn inner<R: Real>(a: &[R], b: &[R]) -> R {
-    a.iter().zip(b).fold(R::zero(), |s, (x, y)| s + *x * *y)
+    let mut lanes = [R::zero(); 8];
+    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest = a8.remainder().iter().zip(part(b, a.len() - a8.remainder().len(), a8.remainder().len()));
+    let tail = rest.fold(R::zero(), |s, (x, y)| s + *x * *y);
+    for (a, b) in a8.zip(b8) {
+        for ((s, x), y) in lanes.iter_mut().zip(a).zip(b) {
+            *s += *x * *y;
+        }
+    }
+    lanes.iter().fold(tail, |s, x| s + *x)
 }
 
 /// `y += a x`.

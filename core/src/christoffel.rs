@@ -1,0 +1,280 @@
+//! The Christoffel force as the exact gradient of the discrete added mass, and the paper's (2.15) beside it.
+//!
+//! With v the velocity, A u = −2 X v and Aᵀ λ = B v, the derivative of the discrete added mass along any motion of
+//! the boundaries is vᵀ dM_h v = λᵀ Im(dG) u: only the blocks between different boundaries contribute, through
+//! D = dW/dz. One pass over the pairs gives the rate a = Im(ż ∘ D u) along the actual motion, and
+//! g_a = q̇ᵀ (∂M/∂q_a) q̇. Then F = T₁ + J p − M J q̇ − g/2 with T₁ = Bᵀ A⁻¹ a, p = M q̇, (J v)_i = ω_i (−v_y, v_x, 0).
+
+use crate::articulation::twist_of;
+use crate::boundary::Nodes;
+use crate::model::Model;
+use crate::nystrom::{Poses, induced_velocity, targets, transposed_velocity};
+use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
+use crate::se2::Twist;
+use crate::workspace::{copy, part, part_mut};
+
+/// Scratch of the pair passes: four vectors of length N.
+pub(crate) struct PairScratch<'a, R> {
+    pub zx: &'a mut [R],
+    pub zy: &'a mut [R],
+    pub hx: &'a mut [R],
+    pub hy: &'a mut [R],
+}
+
+/// One ordered pair (target i, source j) as a pass sees it: nodes of the target in the source's frame and what
+/// the source induces there.
+pub(crate) struct Induced<'a, R> {
+    pub target: usize,
+    pub source: usize,
+    /// First unknown and number of unknowns of the target.
+    pub first: usize,
+    pub len: usize,
+    pub nodes: Nodes<'a, R>,
+    pub hx: &'a [R],
+    pub hy: &'a [R],
+}
+
+/// Visits every ordered pair of different boundaries of which one moves, with h = D_ij w_j at the target's nodes.
+/// `w` is complex (an empty imaginary part is 0). 20 flops per pair of nodes.
+pub(crate) fn each_induced<R: Real>(
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    wx: &[R],
+    wy: &[R],
+    s: &mut PairScratch<'_, R>,
+    mut visit: impl FnMut(Induced<'_, R>),
+) {
+    for (j, source, source_nodes) in model.each_boundary() {
+        for (i, target, nodes) in model.each_boundary() {
+            if i == j || (source.link.is_none() && target.link.is_none()) {
+                continue;
+            }
+            let n = target.nodes;
+            let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
+            for ((x, y), z) in zx.iter_mut().zip(zy.iter_mut()).zip(targets(&nodes, poses.get(i), poses.get(j))) {
+                (*x, *y) = (z.re, z.im);
+            }
+            let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
+            hx.fill(R::zero());
+            hy.fill(R::zero());
+            let (wx, wy) = (part(wx, source.first, source.nodes), part(wy, source.first, source.nodes));
+            induced_velocity(source, &source_nodes, wx, wy, zx, zy, hx, hy);
+            visit(Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy });
+        }
+    }
+}
+
+/// Twist of a boundary (0 for walls) from velocities of the links.
+#[inline]
+pub(crate) fn boundary_twist<R: Real>(model: &Model<'_, R>, rates: &[R], boundary: usize) -> Twist<R> {
+    match model.boundary(boundary).and_then(|(b, _)| b.link) {
+        Some(link) => twist_of(rates, link),
+        None => Twist::default(),
+    }
+}
+
+/// Rate of change of the target's nodes in the source's frame, node by node.
+pub(crate) fn relative_rates<'a, R: Real>(
+    pair: &Induced<'a, R>,
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    rates: &[R],
+) -> impl Iterator<Item = Complex<R>> + 'a {
+    let (p, q) = (poses.get(pair.target), poses.get(pair.source));
+    let (vi, vj) = (boundary_twist(model, rates, pair.target), boundary_twist(model, rates, pair.source));
+    let nodes = pair.nodes;
+    let shift = p.origin - q.origin;
+    // `nodes` borrows the model's store, not the pair.
+    nodes.x.iter().zip(nodes.y).map(move |(x, y)| {
+        let arm = p.turned(complex(*x, *y));
+        q.unturned(vi.at(arm) - vj.at(shift + arm))
+    })
+}
+
+/// Adds scale · Im Σ f (1, i, i·arm) to the gradient by the target's pose, and subtracts it (with the arm from the
+/// source) from the source's; f = weight · h, turned to world directions.
+pub(crate) fn add_pose_gradient<R: Real>(
+    pair: &Induced<'_, R>,
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    weight: &[R],
+    scale: R,
+    gradient: &mut [R],
+) {
+    let (p, q) = (poses.get(pair.target), poses.get(pair.source));
+    let shift = p.origin - q.origin;
+    let (mut force, mut turn_target, mut turn_source) = (Complex::default(), R::zero(), R::zero());
+    let values = weight.iter().zip(pair.hx).zip(pair.hy);
+    for (x, ((w, hx), hy)) in pair.nodes.points().zip(values) {
+        let f = complex(*hx, *hy) * q.turn.conj() * *w;
+        let arm = p.turned(x);
+        force += f;
+        // Im(i f arm) = Re(f arm)
+        turn_target += (f * arm).re;
+        turn_source += (f * (shift + arm)).re;
+    }
+    // (Im Σf, Im iΣf) = (Im, Re)
+    let linear = complex(force.im, force.re) * scale;
+    add_three(model, pair.target, linear, turn_target * scale, gradient);
+    add_three(model, pair.source, -linear, -turn_source * scale, gradient);
+}
+
+/// Adds to a boundary's three reals, if it moves.
+pub(crate) fn add_three<R: Real>(model: &Model<'_, R>, boundary: usize, linear: Complex<R>, angular: R, out: &mut [R]) {
+    if let Some(link) = model.boundary(boundary).and_then(|(b, _)| b.link) {
+        for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip([linear.re, linear.im, angular]) {
+            *o += x;
+        }
+    }
+}
+
+/// The pass: `rate = Im(ż ∘ D u)` and `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames, per unit
+/// density. O(N²).
+pub(crate) fn pair_pass<R: Real>(
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    qd: &[R],
+    density: &[R],
+    adjoint: &[R],
+    s: &mut PairScratch<'_, R>,
+    rate: &mut [R],
+    gradient: &mut [R],
+) {
+    rate.fill(R::zero());
+    gradient.fill(R::zero());
+    each_induced(model, poses, density, &[], s, |pair| {
+        let rates = relative_rates(&pair, model, poses, qd);
+        let h = pair.hx.iter().zip(pair.hy);
+        for ((a, zd), (hx, hy)) in part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(h) {
+            *a += zd.re * *hy + zd.im * *hx;
+        }
+        add_pose_gradient(&pair, model, poses, part(adjoint, pair.first, pair.len), R::one(), gradient);
+    });
+}
+
+/// The other half of the force's first term: `out = Dᵀ`-pass of the adjoint density, so that T₂ = −2 Xᵀ A⁻ᵀ out.
+/// Its difference from T₁ measures the resolution. O(N²).
+pub(crate) fn transposed_pass<R: Real>(
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    qd: &[R],
+    adjoint: &[R],
+    s: &mut PairScratch<'_, R>,
+    out: &mut [R],
+) {
+    out.fill(R::zero());
+    for (j, source, source_nodes) in model.each_boundary() {
+        for (i, target, nodes) in model.each_boundary() {
+            if i == j || (source.link.is_none() && target.link.is_none()) {
+                continue;
+            }
+            let n = target.nodes;
+            let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
+            for ((x, y), z) in zx.iter_mut().zip(zy.iter_mut()).zip(targets(&nodes, poses.get(i), poses.get(j))) {
+                (*x, *y) = (z.re, z.im);
+            }
+            let (fx, fy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
+            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
+            let rates = relative_rates(&pair, model, poses, qd);
+            let weights = part(adjoint, target.first, n);
+            for (((fx, fy), zd), w) in fx.iter_mut().zip(fy.iter_mut()).zip(rates).zip(weights) {
+                (*fx, *fy) = (zd.re * *w, zd.im * *w);
+            }
+            transposed_velocity(source, &source_nodes, fx, fy, zx, zy, part_mut(out, source.first, source.nodes));
+        }
+    }
+}
+
+/// Completes a force of per-unit-density quantities in world directions, in place:
+/// `force += J p − g/2`, where the angular part of g also holds the turning of the frames.
+pub(crate) fn add_frame_terms<R: Real>(links: usize, qd: &[R], momentum: &[R], gradient: &[R], force: &mut [R]) {
+    for i in 0..links {
+        let (v, p, g) = (twist_of(qd, i), twist_of(momentum, i), twist_of(gradient, i));
+        let turning = R::TWO * (v.linear.im * p.linear.re - v.linear.re * p.linear.im);
+        let linear = perp(p.linear) * v.angular - g.linear * R::HALF;
+        let angular = -(g.angular + turning) * R::HALF;
+        for (f, x) in part_mut(force, 3 * i, 3).iter_mut().zip([linear.re, linear.im, angular]) {
+            *f += x;
+        }
+    }
+}
+
+/// (J v)_i = ω_i (−v_y, v_x, 0), subtracted: `out = base − J q̇`.
+pub(crate) fn without_turning<R: Real>(links: usize, base: &[R], qd: &[R], out: &mut [R]) {
+    copy(out, base);
+    for i in 0..links {
+        let v = twist_of(qd, i);
+        let j = perp(v.linear) * v.angular;
+        for (o, x) in part_mut(out, 3 * i, 3).iter_mut().zip([j.re, j.im, R::zero()]) {
+            *o -= x;
+        }
+    }
+}
+
+/// The derivative by the boundary's parameter of samples at N equispaced parameters (the trigonometric
+/// interpolant's; the highest mode's derivative is 0). O(N²), for cross-checks.
+pub(crate) fn periodic_derivative<R: Real>(f: &[R], k: usize) -> R {
+    let n = f.len();
+    let h = R::PI / R::count(n.max(1));
+    let mut sum = R::zero();
+    for (j, fj) in f.iter().enumerate().filter(|(j, _)| *j != k) {
+        let d = j.abs_diff(k);
+        let (s, c) = (R::count(d) * h).sin_cos();
+        let weight = if d % 2 == 0 { c / s } else { -c / s };
+        // ½ (−1)^(k−j) cot((s_k − s_j)/2)
+        sum += if k > j { *fj * weight } else { -*fj * weight };
+    }
+    sum * R::HALF
+}
+
+/// (2.15) per unit density: fills `kernel` so that the force is Σ ψ_a kernel, and adds to `out` (link frames) the part
+/// that multiplies b_a. With ∂τ integrated by parts, −∫ ∂τψ_a ∂τψ v_n = ∫ ψ_a ∂τ(∂τψ v_n).
+///
+/// `potential` is ψ of the motion; `v` the links' velocities in their frames; `work` scratch of length N. O(N²).
+pub(crate) fn boundary_formula<R: Real>(
+    model: &Model<'_, R>,
+    potential: &[R],
+    v: &[R],
+    kernel: &mut [R],
+    work: &mut [R],
+    out: &mut [R],
+) {
+    kernel.fill(R::zero());
+    for (_, b, nodes) in model.each_boundary() {
+        let Some(link) = b.link else { continue };
+        let twist = twist_of(v, link);
+        let psi = part(potential, b.first, b.nodes);
+        let product = part_mut(work, b.first, b.nodes);
+        let kernel = part_mut(kernel, b.first, b.nodes);
+        let (mut linear, mut angular) = (Complex::default(), R::zero());
+        for (k, (x, d)) in nodes.points().zip(nodes.tangents()).enumerate() {
+            let speed = cabs(d);
+            // n = i T into the link, τ = i n = −T: ∂τ = −d/ds / speed.
+            let normal = perp(d) / speed;
+            let velocity = twist.at(x);
+            let (xi, zeta) = (dot(velocity, perp(normal)), dot(velocity, normal));
+            let slope = -periodic_derivative(psi, k) / speed;
+            if let Some(p) = product.get_mut(k) {
+                *p = slope * zeta;
+            }
+            let second = complex(periodic_derivative(nodes.dx, k), periodic_derivative(nodes.dy, k));
+            let curvature = dot(perp(d), second) / (speed * speed * speed);
+            let arm = dot(x, normal);
+            let s =
+                curvature * (xi * xi - zeta * zeta) + R::TWO * xi * twist.angular - arm * twist.angular * twist.angular;
+            if let Some(g) = kernel.get_mut(k) {
+                *g = s * speed * nodes.step;
+            }
+            let half = (slope * slope + zeta * zeta) * R::HALF * nodes.step;
+            linear += perp(d) * half;
+            angular += dot(x, d) * half;
+        }
+        for (k, g) in kernel.iter_mut().enumerate() {
+            // ds ∂τ = −h d/ds
+            *g -= periodic_derivative(product, k) * nodes.step;
+        }
+        for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip([linear.re, linear.im, angular]) {
+            *o += x;
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Ellipse about the origin, in the eccentric angle.
+
+use crate::curve::AreaProperties;
+use crate::scalar::{Complex, Real, complex, csin_cos, perp};
+
+/// γ(t) = a cos t + i b sin t, with a, b > 0 in any order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipse<R> {
+    /// Semi-axis along x.
+    pub a: R,
+    /// Semi-axis along y.
+    pub b: R,
+}
+
+impl<R: Real> Ellipse<R> {
+    fn combine(&self, s: Complex<R>, c: Complex<R>) -> [Complex<R>; 3] {
+        let x = c * self.a + perp(s * self.b);
+        [x, s * -self.a + perp(c * self.b), -x]
+    }
+
+    pub(super) fn jet(&self, t: Complex<R>) -> [Complex<R>; 3] {
+        let (s, c) = csin_cos(t);
+        self.combine(s, c)
+    }
+
+    pub(super) fn jet_real(&self, t: R) -> [Complex<R>; 3] {
+        let (s, c) = t.sin_cos();
+        let x = complex(self.a * c, self.b * s);
+        [x, complex(-self.a * s, self.b * c), -x]
+    }
+
+    pub(super) fn delta(&self, t: R, u: Complex<R>) -> Complex<R> {
+        let half = u * R::HALF;
+        let (s, c) = csin_cos(half + t);
+        (s * -self.a + perp(c * self.b)) * csin_cos(half).0 * R::TWO
+    }
+
+    /// In closed form; the perimeter by the arithmetic-geometric mean, which no aspect ratio slows down.
+    pub(super) fn properties(&self) -> AreaProperties<R> {
+        let (a, b) = (self.a.max(self.b), self.a.min(self.b));
+        let area = R::PI * a * b;
+        // In units of a, so that squares of large or small axes stay in range.
+        let (mut m, mut g) = (R::one(), b / a);
+        let mut sum = (R::one() - g) * (R::one() + g) * R::HALF;
+        let mut power = R::HALF;
+        for _ in 0..16 {
+            let c = (m - g) * R::HALF;
+            power *= R::TWO;
+            sum += power * c * c;
+            (m, g) = ((m + g) * R::HALF, (m * g).sqrt());
+            if c <= R::EPSILON * R::HALF {
+                break;
+            }
+        }
+        AreaProperties {
+            area,
+            centroid: Complex::default(),
+            polar_moment: area * (a * a + b * b) / R::lit(4.0),
+            perimeter: R::TAU * a * (R::one() - sum) / m,
+            reach: a,
+        }
+    }
+}

@@ -1,0 +1,421 @@
+//! What can be asked of a simulation at the state it shows: energies, impulses, gaps, forces, matrices, error
+//! indicators. The first question after a step costs one evaluation; the following ones share it.
+
+use crate::articulation::{put_three, twist_of};
+use crate::christoffel::{PairScratch, transposed_pass};
+pub use crate::contact::Gap;
+use crate::contact::smallest_gap;
+pub use crate::dynamics::Counters;
+use crate::dynamics::{Work, flow, joint_torque, scratch, system};
+use crate::forces::{buoyancy, circulation, repulsion};
+use crate::model::{Control, Formulation, Model};
+use crate::nystrom::Poses;
+use crate::potentials::{
+    BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
+};
+use crate::scalar::Real;
+use crate::sim::Sim;
+use crate::status::{Error, Result, Status};
+use crate::workspace::{at, axpy, copy, part, put};
+
+/// Energies, J/m.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Energy<R> {
+    /// Kinetic energy of the fluid moved by the bodies, ½ q̇ᵀ M^f q̇.
+    pub kinetic_fluid: R,
+    /// Kinetic energy of the bodies.
+    pub kinetic_bodies: R,
+    /// Potential energy of weight and buoyancy.
+    pub buoyancy: R,
+    /// Potential energy of repulsion.
+    pub repulsion: R,
+    /// Kinetic energy of the circulatory flow (up to a constant; 0 for a lone body in unbounded fluid).
+    pub circulation: R,
+    /// Sum of the five.
+    pub total: R,
+    /// Work done by the drives since the start; total − work is constant.
+    pub work: R,
+}
+
+/// Relative error indicators of the space discretization. Within a factor of about 20 of the error in the cases measured;
+/// they do not see an error of the shape itself.
+#[derive(Clone, Copy, PartialEq, Debug, Default)]
+pub struct Resolution<R> {
+    /// Asymmetry of the discrete added mass, relative to its largest entry.
+    pub mass: R,
+    /// Difference of the two forms of the force's first term, relative to the largest force.
+    pub force: R,
+}
+
+impl<R: Real> Work<'_, R> {
+    /// Densities, adjoint and momentum of the motion placed last.
+    pub(crate) fn prepare_motion(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
+        self.fill_jacobian(model);
+        self.solve_fluid(model, counters)?;
+        self.solve_motion(model);
+        Ok(())
+    }
+
+    /// Linear impulse and angular impulse about the origin, bodies and fluid (without circulation).
+    pub(crate) fn total_impulse(&self, model: &Model<'_, R>) -> [R; 3] {
+        let mut total = [R::zero(); 3];
+        for (i, l) in model.links.iter().enumerate() {
+            let (p, v) = (twist_of(self.momentum, i), twist_of(self.qd, i));
+            let linear = p.linear + v.linear * l.mass;
+            let (x, y) = (at(self.q, 3 * i), at(self.q, 3 * i + 1));
+            total[0] += linear.re;
+            total[1] += linear.im;
+            total[2] += p.angular + v.angular * l.inertia + x * linear.im - y * linear.re;
+        }
+        total
+    }
+
+    /// `out = M^f e` per unit density for a world direction `e` of one coordinate; `transposed`: the other half.
+    fn mass_column(&mut self, model: &Model<'_, R>, direction: usize, transposed: bool, out: &mut [R]) {
+        let poses = Poses(self.poses);
+        out.fill(R::zero());
+        put(out, direction, R::one());
+        to_link_frames(model, poses, out, self.v);
+        let system = system!(self);
+        if transposed {
+            fill_flux(model, self.v, self.solution);
+            out.fill(R::zero());
+            add_potential_moments(model, self.solution, R::one(), out);
+            system.factors().solve_transposed(self.solution);
+            add_potential_moments(model, self.solution, -R::TWO, out);
+        } else {
+            self.solution.fill(R::zero());
+            add_interior_potential(model, self.v, -R::TWO, self.solution);
+            system.factors().solve(self.solution);
+            add_interior_potential(model, self.v, R::one(), self.solution);
+            flux_moments(model, self.solution, out);
+        }
+        to_world(model, poses, R::one(), out);
+    }
+}
+
+impl<R: Real> Sim<'_, R> {
+    fn rows(&self) -> usize {
+        3 * self.model.links.len()
+    }
+
+    fn expect(&self, given: usize, needed: usize) -> Result<()> {
+        if given == needed { Ok(()) } else { Err(Error::new(Status::Length).of("length", given as f64)) }
+    }
+
+    /// The smallest gap between boundaries of which one moves. O(N²) for pairs that are not clearly apart; no evaluation.
+    pub fn gap(&mut self) -> Gap<R> {
+        let poses = &mut *self.work.poses;
+        let walls = self.model.head.plan.walls;
+        for i in 0..self.model.links.len() {
+            if let &[x, y, theta] = part(self.state.positions, 3 * i, 3) {
+                crate::nystrom::put_pose(poses, walls + i, &crate::se2::Pose::new(x, y, theta));
+            }
+        }
+        smallest_gap(&self.model, Poses(poses))
+    }
+
+    /// Energies at the state shown.
+    ///
+    /// # Errors
+    /// As an evaluation: `Contact`, `Singular`, `NonFiniteState`.
+    pub fn energy(&mut self) -> Result<Energy<R>> {
+        self.refresh()?;
+        let (model, head) = (self.model, self.model.head);
+        let poses = Poses(self.work.poses);
+        let kinetic_fluid =
+            self.work.momentum.iter().zip(self.work.qd.iter()).fold(R::zero(), |s, (p, v)| s + *p * *v) * R::HALF;
+        let kinetic_bodies = buoyancy::kinetic_bodies(&model, self.work.qd);
+        let zero = R::zero();
+        let weight = if head.plan.gravity { buoyancy::energy(&model, poses, self.work.q) } else { zero };
+        let repulsion = head.repulsion.map_or(zero, |law| repulsion::energy(&model, poses, law));
+        let circulation =
+            if self.circulates() { circulation::energy(&flow!(self.work)) * head.fluid_density } else { zero };
+        let work = if head.tracks_work { self.state.y.last().copied().unwrap_or(zero) } else { zero };
+        let total = kinetic_fluid + kinetic_bodies + weight + repulsion + circulation;
+        Ok(Energy { kinetic_fluid, kinetic_bodies, buoyancy: weight, repulsion, circulation, total, work })
+    }
+
+    fn circulates(&self) -> bool {
+        self.model.head.plan.circulation && self.model.head.plan.formulation != Formulation::Kirchhoff
+    }
+
+    /// Linear impulse (x, y) and angular impulse about the origin of bodies, fluid and circulation. Constant in unbounded
+    /// fluid without gravity and obstacles (with circulation: in the full model).
+    ///
+    /// # Errors
+    /// As [`Sim::energy`].
+    pub fn impulse(&mut self) -> Result<[R; 3]> {
+        self.refresh()?;
+        let mut total = self.work.total_impulse(&self.model);
+        if !self.model.head.plan.circulation {
+            return Ok(total);
+        }
+        let (model, density) = (self.model, self.model.head.fluid_density);
+        let poses = Poses(self.work.poses);
+        if self.circulates() {
+            circulation::impulse(&model, poses, &flow!(self.work), self.work.spare);
+        } else {
+            let [x, y, a] = model.head.lone_impulse;
+            put_three(self.work.spare, 0, poses.get(0).turned(crate::scalar::complex(x, y)), a);
+        }
+        for (_, b, _) in model.each_boundary() {
+            let Some(link) = b.link else { continue };
+            let p = twist_of(self.work.spare, link);
+            let (x, y) = (at(self.work.q, 3 * link), at(self.work.q, 3 * link + 1));
+            // The canonical impulse: P − γ J r, with angular part P_θ + r × P − γ |r|²/2.
+            let gamma = b.circulation;
+            total[0] += density * (p.linear.re + gamma * y);
+            total[1] += density * (p.linear.im - gamma * x);
+            total[2] += density * (p.angular + x * p.linear.im - y * p.linear.re - gamma * (x * x + y * y) * R::HALF);
+        }
+        Ok(total)
+    }
+
+    /// Torque (force for a slider) that drives every joint, and its power ν u̇ (7.2). `joint_count` each.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn joint_torques(&mut self, torque: &mut [R], power: &mut [R]) -> Result<()> {
+        self.expect(torque.len(), self.model.joint_count())?;
+        self.expect(power.len(), self.model.joint_count())?;
+        self.refresh()?;
+        let model = self.model;
+        self.work.drive_forces(&model);
+        let joints = model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3);
+        for ((torque, power), (k, c)) in torque.iter_mut().zip(power.iter_mut()).zip(joints) {
+            let (u, du) = (at(self.work.s, k), at(self.work.ds, k));
+            *torque = match c.control {
+                Control::Torque => joint_torque(&model, k, self.head.time, self.work.channels, u, du),
+                _ => at(self.work.generalized, k),
+            };
+            *power = *torque * du;
+        }
+        Ok(())
+    }
+
+    /// Accelerations q̈ (3 per link).
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn accelerations(&mut self, out: &mut [R]) -> Result<()> {
+        self.expect(out.len(), self.rows())?;
+        self.refresh()?;
+        copy(out, self.work.qdd);
+        Ok(())
+    }
+
+    /// Symmetrized added mass M^f (3n × 3n, column-major). 3n solves.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn added_mass(&mut self, out: &mut [R]) -> Result<()> {
+        let n = self.rows();
+        self.expect(out.len(), n * n)?;
+        self.refresh()?;
+        let (model, density) = (self.model, self.model.head.fluid_density);
+        out.fill(R::zero());
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            for (k, column) in self.work.momenta.chunks_exact(n.max(1)).zip(out.chunks_exact_mut(n.max(1))) {
+                copy(column, k);
+            }
+            return Ok(());
+        }
+        if !model.head.plan.fluid {
+            return Ok(());
+        }
+        for (k, column) in out.chunks_exact_mut(n.max(1)).enumerate() {
+            self.work.mass_column(&model, k, false, column);
+        }
+        self.head.fresh = false;
+        for i in 0..n {
+            for j in 0..=i {
+                let mean = (at(out, i * n + j) + at(out, j * n + i)) * R::HALF * density;
+                put(out, i * n + j, mean);
+                put(out, j * n + i, mean);
+            }
+        }
+        Ok(())
+    }
+
+    /// Mass matrix M = diag(m, m, I) + M^f (3n × 3n, column-major).
+    ///
+    /// # Errors
+    /// As [`Sim::added_mass`].
+    pub fn mass_matrix(&mut self, out: &mut [R]) -> Result<()> {
+        self.added_mass(out)?;
+        let n = self.rows();
+        for (i, l) in self.model.links.iter().enumerate() {
+            for (k, m) in [l.mass, l.mass, l.inertia].into_iter().enumerate() {
+                crate::workspace::add(out, (3 * i + k) * (n + 1), m);
+            }
+        }
+        Ok(())
+    }
+
+    /// Christoffel force ⟨Γ, q̇, q̇⟩ (3 per link), by the scene's formula.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn christoffel(&mut self, out: &mut [R]) -> Result<()> {
+        self.expect(out.len(), self.rows())?;
+        self.refresh()?;
+        self.work.qdd.fill(R::zero());
+        let model = self.model;
+        self.work.christoffel(&model);
+        copy(out, self.work.force);
+        self.head.fresh = false;
+        Ok(())
+    }
+
+    /// ∂P/∂q of weight and buoyancy (3 per link).
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn buoyancy(&mut self, out: &mut [R]) -> Result<()> {
+        self.expect(out.len(), self.rows())?;
+        self.refresh()?;
+        out.fill(R::zero());
+        buoyancy::add_gradient(&self.model, Poses(self.work.poses), out);
+        Ok(())
+    }
+
+    /// ∂V/∂q of repulsion (3 per link); 0 without repulsion.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn repulsion(&mut self, out: &mut [R]) -> Result<()> {
+        self.expect(out.len(), self.rows())?;
+        self.refresh()?;
+        out.fill(R::zero());
+        if let Some(law) = self.model.head.repulsion {
+            repulsion::add_gradient(&self.model, Poses(self.work.poses), law, out);
+        }
+        Ok(())
+    }
+
+    /// ∂T_c/∂q of the circulatory flow's energy (3 per link); 0 without circulation.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn circulation_gradient(&mut self, out: &mut [R]) -> Result<()> {
+        self.expect(out.len(), self.rows())?;
+        self.refresh()?;
+        out.fill(R::zero());
+        if self.circulates() {
+            let (model, w) = (self.model, &mut self.work);
+            let (system, mut flow, mut scratch) = (system!(w), flow!(w), scratch!(w));
+            let density = model.head.fluid_density;
+            circulation::add_energy_gradient(&model, Poses(w.poses), &system, &mut flow, &mut scratch, density, out);
+        }
+        Ok(())
+    }
+
+    /// The antisymmetric matrix G of the force +G q̇ linear in the velocities (3n × 3n, column-major); 0 without circulation
+    /// and in the paper's model. 6n solves.
+    ///
+    /// # Errors
+    /// `Length`, and as [`Sim::energy`].
+    pub fn gyroscopic(&mut self, out: &mut [R]) -> Result<()> {
+        let n = self.rows();
+        self.expect(out.len(), n * n)?;
+        self.refresh()?;
+        out.fill(R::zero());
+        let model = self.model;
+        if !model.head.gyroscopic {
+            return Ok(());
+        }
+        for (k, column) in out.chunks_exact_mut(n.max(1)).enumerate() {
+            self.work.gyroscopic_column(&model, k);
+            copy(column, self.work.force);
+            for x in column {
+                *x = -*x;
+            }
+        }
+        self.head.fresh = false;
+        Ok(())
+    }
+
+    /// Error indicators of the space discretization at the state shown. 12n + 2 solves.
+    ///
+    /// # Errors
+    /// As [`Sim::energy`].
+    pub fn resolution(&mut self) -> Result<Resolution<R>> {
+        self.refresh()?;
+        let model = self.model;
+        let zero = R::zero();
+        if model.head.plan.unknowns == 0 {
+            return Ok(Resolution { mass: zero, force: zero });
+        }
+        let largest = |x: &[R]| x.iter().fold(R::zero(), |m, x| m.max(x.abs()));
+        // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l.
+        let w = &mut self.work;
+        w.qdd.fill(zero);
+        w.christoffel(&model);
+        let scale = largest(w.force);
+        w.solve_motion(&model);
+        w.pass(&model);
+        let poses = Poses(w.poses);
+        let mut pairs = PairScratch { zx: w.zx, zy: w.zy, hx: w.hx, hy: w.hy };
+        transposed_pass(&model, poses, w.qd, w.adjoint, &mut pairs, w.solution);
+        let factors = system!(w);
+        let factors = factors.factors();
+        factors.solve(w.rate);
+        factors.solve_transposed(w.solution);
+        flux_moments(&model, w.rate, w.force);
+        add_potential_moments(&model, w.solution, R::TWO, w.force);
+        let difference = largest(w.force) * model.head.fluid_density;
+        let force = if scale > zero { difference / scale } else { zero };
+        // Mass: M_h against its transpose, column by column.
+        let (mut asymmetry, mut size) = (zero, zero);
+        for k in 0..self.rows() {
+            let w = &mut self.work;
+            // Two vectors that `mass_column` does not use, lent to it and given back.
+            let (column, row) = (core::mem::take(&mut w.force), core::mem::take(&mut w.spare));
+            w.mass_column(&model, k, false, column);
+            w.mass_column(&model, k, true, row);
+            size = size.max(largest(column));
+            axpy(row, -R::one(), column);
+            asymmetry = asymmetry.max(largest(row));
+            (w.force, w.spare) = (column, row);
+        }
+        self.head.fresh = false;
+        Ok(Resolution { mass: asymmetry / size, force })
+    }
+}
+
+impl<R: Real> Work<'_, R> {
+    /// The Christoffel force alone into `force`; `qdd` must be 0.
+    fn christoffel(&mut self, model: &Model<'_, R>) {
+        self.force_of_accelerations(model);
+    }
+
+    /// −G e_k into `force` for the motion of one coordinate alone.
+    fn gyroscopic_column(&mut self, model: &Model<'_, R>, k: usize) {
+        let poses = Poses(self.poses);
+        self.force.fill(R::zero());
+        self.qd.fill(R::zero());
+        put(self.qd, k, R::one());
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            crate::dynamics::add_lone_circulation(model, poses, self.qd, self.force);
+            return;
+        }
+        to_link_frames(model, poses, self.qd, self.v);
+        fill_flux(model, self.v, self.adjoint);
+        let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
+        system.factors().solve_transposed(self.adjoint);
+        circulation::add_gyroscopic_force(
+            model,
+            poses,
+            &system,
+            &mut flow,
+            &mut scratch,
+            self.qd,
+            self.v,
+            self.adjoint,
+            self.spare,
+            model.head.fluid_density,
+            self.force,
+        );
+    }
+}

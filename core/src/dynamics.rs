@@ -1,0 +1,594 @@
+//! The equations of motion: from time, coordinates and rates to accelerations, joint torques and energies.
+//!
+//! q = F(p, u) with free coordinates p and prescribed ones u; N = ∂F/∂(p, u), q̈ = N (p̈, ü) + a. With f every force except
+//! M q̈ the free coordinates obey N_pᵀ M N_p p̈ = τ − N_pᵀ [M (a + N_u ü) + f] (6.3); the prescribed ones then take
+//! ν = N_uᵀ [M q̈ + f] (7.2). Torque-driven joints are free coordinates with a torque τ (Theorem 7.1).
+//!
+//! The fluid's part of M w is formed from both halves of the symmetrized discrete added mass, so the discrete
+//! energy balance is exact at any resolution.
+
+use crate::articulation::{
+    accelerations, jacobian_column, place_links, project, put_three, set_coordinates, twist_of, velocities,
+};
+use crate::christoffel::{PairScratch, add_frame_terms, boundary_formula, pair_pass, without_turning};
+use crate::forces::{buoyancy, circulation, repulsion};
+use crate::lu::{Factors, factor};
+use crate::model::{Control, Formulation, Model, ModelHead};
+use crate::nystrom::{Poses, put_pose};
+use crate::potentials::{
+    BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
+};
+use crate::scalar::{Complex, Real};
+use crate::scene::ForceFormula;
+use crate::status::{Error, Result, Status};
+use crate::workspace::{add, at, axpy, buffers, copy, inner, part, part_mut, put};
+
+/// Numbers that the buffers' lengths follow from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dims {
+    pub links: usize,
+    pub boundaries: usize,
+    pub coordinates: usize,
+    pub free: usize,
+    /// Unknowns of the boundary system while stepping (0: none).
+    pub unknowns: usize,
+    pub ld: usize,
+    pub columns: usize,
+    /// Unknowns if there is circulation, else 0.
+    pub circulating: usize,
+    /// 1 if there is repulsion, gravity or circulation to keep a vector for.
+    pub channels: usize,
+}
+
+impl Dims {
+    pub(crate) fn of<R: Real>(head: &ModelHead<R>, coordinates: usize) -> Dims {
+        let p = &head.plan;
+        Dims {
+            links: p.links,
+            boundaries: p.links + p.walls,
+            coordinates,
+            free: p.free_coordinates,
+            unknowns: p.unknowns,
+            // An odd multiple of a cache line keeps columns from falling on the same lines.
+            ld: if p.unknowns == 0 { 0 } else { p.unknowns + 8 },
+            columns: p.free_coordinates + usize::from(head.prescribed_moves),
+            circulating: if p.circulation { p.unknowns } else { 0 },
+            channels: head.channels,
+        }
+    }
+}
+
+buffers! {
+    /// Scratch and results of one evaluation.
+    pub(crate) struct Work(d: Dims) {
+        q: 3 * d.links,
+        qd: 3 * d.links,
+        qdd: 3 * d.links,
+        poses: 4 * d.boundaries,
+        channels: d.channels * crate::signal::CHANNEL_LEN,
+        s: d.coordinates,
+        ds: d.coordinates,
+        dds: d.coordinates,
+        generalized: d.coordinates,
+        jacobian: 3 * d.links * d.columns,
+        moving: 3 * d.links * d.columns,
+        momenta: 3 * d.links * d.columns,
+        reduced: d.free * (d.free + 1),
+        reduced_pivots: d.free,
+        drift: 3 * d.links,
+        v: 3 * d.links,
+        inertial: 3 * d.links,
+        momentum: 3 * d.links,
+        gradient: 3 * d.links,
+        force: 3 * d.links,
+        spare: 3 * d.links,
+        matrix: d.ld * (d.unknowns + d.columns),
+        pivots: d.unknowns,
+        regular: d.circulating * d.circulating,
+        density: d.unknowns,
+        adjoint: d.unknowns,
+        rate: d.unknowns,
+        solution: d.unknowns,
+        zx: d.unknowns,
+        zy: d.unknowns,
+        hx: d.unknowns,
+        hy: d.unknowns,
+        stream: d.circulating,
+        normal: d.circulating,
+        tangential: d.circulating,
+        potential: d.circulating,
+        circulation_adjoint: d.circulating,
+        circulation_spare: d.circulating,
+        circulation_second: d.circulating,
+    }
+}
+
+/// The bundles that the lower modules take, borrowed from a `Work`.
+macro_rules! system {
+    ($w:expr) => {
+        BoundarySystem {
+            matrix: $w.matrix,
+            ld: $w.pivots.len() + 8,
+            unknowns: $w.pivots.len(),
+            pivots: $w.pivots,
+            regular: $w.regular,
+        }
+    };
+}
+macro_rules! flow {
+    ($w:expr) => {
+        circulation::Flow {
+            stream: $w.stream,
+            normal: $w.normal,
+            tangential: $w.tangential,
+            potential: $w.potential,
+            adjoint: $w.circulation_adjoint,
+            spare: $w.circulation_spare,
+            second: $w.circulation_second,
+        }
+    };
+}
+macro_rules! scratch {
+    ($w:expr) => {
+        PairScratch { zx: $w.zx, zy: $w.zy, hx: $w.hx, hy: $w.hy }
+    };
+}
+pub(crate) use {flow, scratch, system};
+
+/// Counts that a simulation keeps.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counters {
+    /// Evaluations of the equations of motion.
+    pub evaluations: u64,
+    /// Factorizations of the boundary system.
+    pub factorizations: u64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected: u64,
+}
+
+/// What the fluid's terms of the last evaluation were made for.
+impl<R: Real> Work<'_, R> {
+    /// Places everything at (t, p, ṗ): coordinates, poses, velocities. Refuses contact and non-finite states.
+    pub(crate) fn place(&mut self, model: &Model<'_, R>, t: R, p: &[R], dp: &[R]) -> Result<()> {
+        set_coordinates(model, t, p, dp, self.channels, self.s, self.ds, self.dds);
+        place_links(model, self.s, self.q, self.poses);
+        velocities(model, self.s, self.ds, self.q, self.qd);
+        if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
+            return Err(Status::NonFiniteState.into());
+        }
+        match crate::contact::first_contact(model, Poses(self.poses)) {
+            Some((a, b, gap)) => Err(Error::new(Status::Contact).at(a).with(b).of("gap", gap.to_f64())),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the walls' poses, once.
+    pub(crate) fn place_walls(&mut self, model: &Model<'_, R>) {
+        for (i, b) in model.boundaries.iter().enumerate().filter(|(_, b)| b.link.is_none()) {
+            put_pose(self.poses, i, &b.pose);
+        }
+    }
+
+    /// Jacobian columns of the free coordinates and, if prescribed coordinates move, the motion they alone make.
+    pub(crate) fn fill_jacobian(&mut self, model: &Model<'_, R>) {
+        let rows = 3 * model.links.len();
+        let unit = &mut *self.generalized;
+        for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
+            jacobian_column(model, i, self.s, self.q, unit, part_mut(self.jacobian, c.free * rows, rows));
+        }
+        if model.head.prescribed_moves {
+            for ((u, ds), c) in unit.iter_mut().zip(self.ds.iter()).zip(model.coordinates) {
+                *u = if c.control == Control::Prescribed { *ds } else { R::zero() };
+            }
+            let at = model.head.plan.free_coordinates * rows;
+            velocities(model, self.s, unit, self.q, part_mut(self.jacobian, at, rows));
+        }
+    }
+
+    /// Solves the boundary system for the columns and forms their momenta (world directions, with density), M_h C.
+    pub(crate) fn solve_fluid(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
+        let rows = 3 * model.links.len();
+        let density = model.head.fluid_density;
+        self.momenta.fill(R::zero());
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            for (c, k) in self.jacobian.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1))) {
+                lone_momentum(model, Poses(self.poses), c, k);
+            }
+            return Ok(());
+        }
+        if model.head.plan.unknowns == 0 {
+            return Ok(());
+        }
+        let poses = Poses(self.poses);
+        for (c, m) in self.jacobian.chunks_exact(rows.max(1)).zip(self.moving.chunks_exact_mut(rows.max(1))) {
+            to_link_frames(model, poses, c, m);
+        }
+        counters.factorizations += 1;
+        let mut system = system!(self);
+        system.solve(model, poses, self.moving, self.zx, self.zy)?;
+        let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
+        for (k, (m, p)) in columns.enumerate() {
+            copy(self.solution, system.column(k));
+            add_interior_potential(model, m, R::one(), self.solution);
+            flux_moments(model, self.solution, p);
+            to_world(model, poses, density, p);
+        }
+        Ok(())
+    }
+
+    /// Reduced mass matrix N_pᵀ M N_p, factorized.
+    fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
+        let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+        for k in 0..n {
+            let column = part(self.jacobian, k * rows, rows);
+            for j in 0..=k {
+                let other = part(self.jacobian, j * rows, rows);
+                let fluid = inner(other, part(self.momenta, k * rows, rows))
+                    + inner(column, part(self.momenta, j * rows, rows));
+                let mut sum = fluid * R::HALF;
+                for (i, l) in model.links.iter().enumerate() {
+                    let (a, b) = (twist_of(column, i), twist_of(other, i));
+                    sum += l.mass * crate::scalar::dot(a.linear, b.linear) + l.inertia * a.angular * b.angular;
+                }
+                put(self.reduced, k * n + j, sum);
+                put(self.reduced, j * n + k, sum);
+            }
+        }
+        factor(part_mut(self.reduced, 0, n * n), n, n, self.reduced_pivots)?;
+        Ok(())
+    }
+
+    /// Solves the reduced system in place: the right-hand side is in the last column of `reduced`.
+    fn solve_reduced(&mut self, n: usize) {
+        let Some((lu, rhs)) = self.reduced.split_at_mut_checked(n * n) else { return };
+        Factors { lu, ld: n, pivots: self.reduced_pivots }.solve(part_mut(rhs, 0, n));
+    }
+
+    /// The density of the motion itself, its adjoint, and its momentum (symmetrized, world directions, with density).
+    pub(crate) fn solve_motion(&mut self, model: &Model<'_, R>) {
+        let rows = 3 * model.links.len();
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            lone_momentum(model, Poses(self.poses), self.qd, self.momentum);
+            return;
+        }
+        if model.head.plan.unknowns == 0 {
+            self.momentum.fill(R::zero());
+            return;
+        }
+        let poses = Poses(self.poses);
+        to_link_frames(model, poses, self.qd, self.v);
+        let free = model.head.plan.free_coordinates;
+        let rates = model.coordinates.iter().zip(self.ds.iter()).filter(|(c, _)| c.control != Control::Prescribed);
+        let last = core::iter::repeat_n(R::one(), (self.jacobian.len() / rows.max(1)).saturating_sub(free));
+        let mut system = system!(self);
+        system.combine(rates.map(|(_, ds)| *ds).chain(last), self.density);
+        fill_flux(model, self.v, self.adjoint);
+        // ½ Xᵀ B v now, −Xᵀ λ after the solve: M_hᵀ v = Xᵀ (B v − 2 λ).
+        self.momentum.fill(R::zero());
+        add_potential_moments(model, self.adjoint, R::HALF, self.momentum);
+        system.factors().solve_transposed(self.adjoint);
+        add_potential_moments(model, self.adjoint, -R::one(), self.momentum);
+        copy(self.solution, self.density);
+        add_interior_potential(model, self.v, R::one(), self.solution);
+        flux_moments(model, self.solution, self.spare);
+        axpy(self.momentum, R::HALF, self.spare);
+        to_world(model, poses, model.head.fluid_density, self.momentum);
+    }
+
+    /// One pass over the pairs: rate and gradient of the motion (exact-gradient formula).
+    pub(crate) fn pass(&mut self, model: &Model<'_, R>) {
+        self.gradient.fill(R::zero());
+        if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
+            let poses = Poses(self.poses);
+            pair_pass(model, poses, self.qd, self.density, self.adjoint, &mut scratch!(self), self.rate, self.gradient);
+            for g in self.gradient.iter_mut() {
+                *g *= model.head.fluid_density;
+            }
+        }
+    }
+
+    /// `force = F + M^f w` for accelerations w in `drift` (links, world): the Christoffel force and the fluid's inertia.
+    ///
+    /// `halves`: both halves of the symmetrized added mass (a second, transposed solve); otherwise half of M_h w, to
+    /// which the caller adds the other half by the columns' momenta.
+    fn fluid_force(&mut self, model: &Model<'_, R>, w: Inertia, halves: bool) {
+        let links = model.links.len();
+        let (poses, density) = (Poses(self.poses), model.head.fluid_density);
+        self.force.fill(R::zero());
+        if !model.head.plan.fluid {
+            return;
+        }
+        let exact =
+            model.head.force == ForceFormula::ExactGradient || model.head.plan.formulation == Formulation::Kirchhoff;
+        let base: &[R] = match w {
+            Inertia::Drift => self.drift,
+            Inertia::Accelerations => self.qdd,
+        };
+        if exact {
+            without_turning(links, base, self.qd, self.inertial);
+        } else {
+            copy(self.inertial, base);
+        }
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            lone_momentum(model, poses, self.inertial, self.force);
+            if !halves {
+                for f in self.force.iter_mut() {
+                    *f *= R::HALF;
+                }
+            }
+            add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
+            return;
+        }
+        if model.head.plan.unknowns == 0 {
+            return;
+        }
+        to_link_frames(model, poses, self.inertial, self.spare);
+        let system = system!(self);
+        if exact {
+            copy(self.solution, self.rate);
+        } else {
+            self.solution.fill(R::zero());
+        }
+        // A⁻¹ (a − X w) + ½ X w = T₁'s density + ½ (ψ of w)
+        add_interior_potential(model, self.spare, -R::one(), self.solution);
+        system.factors().solve(self.solution);
+        add_interior_potential(model, self.spare, R::HALF, self.solution);
+        flux_moments(model, self.solution, self.force);
+        if halves {
+            fill_flux(model, self.spare, self.solution);
+            add_potential_moments(model, self.solution, R::HALF, self.force);
+            system.factors().solve_transposed(self.solution);
+            add_potential_moments(model, self.solution, -R::one(), self.force);
+        }
+        if exact {
+            to_world(model, poses, density, self.force);
+            add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
+        } else {
+            // (2.15): Σ ψ_a kernel = Xᵀ (kernel − 2 A⁻ᵀ kernel), and the part that multiplies b_a.
+            copy(self.solution, self.density);
+            add_interior_potential(model, self.v, R::one(), self.solution);
+            boundary_formula(model, self.solution, self.v, self.rate, self.hx, self.force);
+            add_potential_moments(model, self.rate, R::one(), self.force);
+            system.factors().solve_transposed(self.rate);
+            add_potential_moments(model, self.rate, -R::TWO, self.force);
+            to_world(model, poses, density, self.force);
+        }
+    }
+
+    /// Adds every force that does not come from the fluid's inertia to `force`.
+    fn add_outer_forces(&mut self, model: &Model<'_, R>) {
+        let poses = Poses(self.poses);
+        let head = model.head;
+        if head.plan.gravity {
+            buoyancy::add_gradient(model, poses, self.force);
+        }
+        if let Some(law) = head.repulsion {
+            repulsion::add_gradient(model, poses, law, self.force);
+        }
+        self.add_circulation(model, true);
+    }
+
+    /// Adds ∂T_c/∂q − G q̇ to `force`.
+    fn add_circulation(&mut self, model: &Model<'_, R>, energy: bool) {
+        let (poses, head) = (Poses(self.poses), model.head);
+        if !head.plan.circulation {
+            return;
+        }
+        let density = head.fluid_density;
+        if head.plan.formulation == Formulation::Kirchhoff {
+            if head.gyroscopic {
+                add_lone_circulation(model, poses, self.qd, self.force);
+            }
+            return;
+        }
+        let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
+        circulation::solve(model, poses, &system, &mut flow);
+        if energy {
+            circulation::add_energy_gradient(model, poses, &system, &mut flow, &mut scratch, density, self.force);
+        }
+        if head.gyroscopic {
+            circulation::add_gyroscopic_force(
+                model,
+                poses,
+                &system,
+                &mut flow,
+                &mut scratch,
+                self.qd,
+                self.v,
+                self.adjoint,
+                self.spare,
+                density,
+                self.force,
+            );
+        }
+    }
+
+    /// Torques of the torque-driven joints, by free coordinate, into the reduced right-hand side.
+    fn add_torques(&mut self, model: &Model<'_, R>, t: R) {
+        let n = model.head.plan.free_coordinates;
+        for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control == Control::Torque) {
+            let torque = joint_torque(model, i, t, self.channels, at(self.s, i), at(self.ds, i));
+            add(self.reduced, n * n + c.free, torque);
+        }
+    }
+
+    /// Accelerations at (t, p, ṗ). Everything that diagnostics need is left in the buffers.
+    pub(crate) fn evaluate(
+        &mut self,
+        model: &Model<'_, R>,
+        impulse: &[R; 3],
+        t: R,
+        p: &[R],
+        dp: &[R],
+        counters: &mut Counters,
+    ) -> Result<()> {
+        counters.evaluations += 1;
+        self.place(model, t, p, dp)?;
+        let locked = model.head.plan.formulation == Formulation::LockedMomentum;
+        self.fill_jacobian(model);
+        self.solve_fluid(model, counters)?;
+        self.reduce_mass(model)?;
+        if locked {
+            self.unlock(model, impulse);
+        }
+        if locked && !model.head.tracks_work {
+            return self.check();
+        }
+        self.accelerate(model, t)
+    }
+
+    /// Accelerations, once velocities are known.
+    pub(crate) fn accelerate(&mut self, model: &Model<'_, R>, t: R) -> Result<()> {
+        let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+        self.solve_motion(model);
+        self.pass(model);
+        // a + N_u ü
+        for (dds, c) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
+            let _ = c;
+            *dds = R::zero();
+        }
+        accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.drift);
+        self.fluid_force(model, Inertia::Drift, false);
+        self.add_outer_forces(model);
+        add_body_inertia(model, self.drift, self.force);
+        project(model, self.s, self.q, self.force, self.generalized);
+        let rhs_at = n * n;
+        for (c, g) in
+            model.coordinates.iter().zip(self.generalized.iter()).filter(|(c, _)| c.control != Control::Prescribed)
+        {
+            let half = inner(part(self.momenta, c.free * rows, rows), self.inertial_of(model)) * R::HALF;
+            put(self.reduced, rhs_at + c.free, -*g - half);
+        }
+        self.add_torques(model, t);
+        self.solve_reduced(n);
+        for (dds, c) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
+            *dds = at(self.reduced, rhs_at + c.free);
+        }
+        accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.qdd);
+        self.check()
+    }
+
+    /// The accelerations that the fluid's inertia of the last `fluid_force` was made for; none without fluid.
+    fn inertial_of(&self, model: &Model<'_, R>) -> &[R] {
+        if model.head.plan.fluid { self.inertial } else { &[] }
+    }
+
+    fn check(&self) -> Result<()> {
+        let all = self.qd.iter().chain(self.dds.iter());
+        if all.clone().all(|x| x.is_finite()) { Ok(()) } else { Err(Status::NonFiniteState.into()) }
+    }
+
+    /// The forces that drive every coordinate, ν = (∂F/∂s)ᵀ [M q̈ + f], into `generalized`. After [`Work::accelerate`].
+    pub(crate) fn drive_forces(&mut self, model: &Model<'_, R>) {
+        self.fluid_force(model, Inertia::Accelerations, true);
+        self.add_outer_forces(model);
+        add_body_inertia(model, self.qdd, self.force);
+        project(model, self.s, self.q, self.force, self.generalized);
+    }
+
+    /// Christoffel force plus fluid inertia of the accelerations in `qdd`, into `force`.
+    pub(crate) fn force_of_accelerations(&mut self, model: &Model<'_, R>) {
+        self.solve_motion(model);
+        self.pass(model);
+        self.fluid_force(model, Inertia::Accelerations, true);
+    }
+
+    /// Power of all drives: Σ ν ṡ over prescribed and torque-driven coordinates.
+    pub(crate) fn power(&mut self, model: &Model<'_, R>, t: R) -> R {
+        let given = model.coordinates.iter().any(|c| c.control == Control::Prescribed && !c.constant);
+        if given {
+            self.drive_forces(model);
+        }
+        let mut power = R::zero();
+        for (i, c) in model.coordinates.iter().enumerate() {
+            power += match c.control {
+                Control::Free => R::zero(),
+                Control::Torque => {
+                    joint_torque(model, i, t, self.channels, at(self.s, i), at(self.ds, i)) * at(self.ds, i)
+                }
+                Control::Prescribed if given => at(self.generalized, i) * at(self.ds, i),
+                Control::Prescribed => R::zero(),
+            };
+        }
+        power
+    }
+
+    /// Velocities of a lone swimmer's root from its impulse: N_pᵀ M (N_p ṗ + N_u u̇) = Π.
+    fn unlock(&mut self, model: &Model<'_, R>, impulse: &[R; 3]) {
+        let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+        let [px, py, l] = *impulse;
+        let (x, y) = (at(self.q, 0), at(self.q, 1));
+        for (k, value) in [px, py, l - (x * py - y * px)].into_iter().enumerate() {
+            let mut sum = value;
+            if model.head.prescribed_moves {
+                let (column, shape) = (part(self.jacobian, k * rows, rows), part(self.jacobian, n * rows, rows));
+                let (momentum, shape_momentum) =
+                    (part(self.momenta, k * rows, rows), part(self.momenta, n * rows, rows));
+                sum -= (inner(column, shape_momentum) + inner(shape, momentum)) * R::HALF;
+                for (i, link) in model.links.iter().enumerate() {
+                    let (a, b) = (twist_of(column, i), twist_of(shape, i));
+                    sum -= link.mass * crate::scalar::dot(a.linear, b.linear) + link.inertia * a.angular * b.angular;
+                }
+            }
+            put(self.reduced, n * n + k, sum);
+        }
+        self.solve_reduced(n);
+        for (ds, c) in self.ds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
+            *ds = at(self.reduced, n * n + c.free);
+        }
+        velocities(model, self.s, self.ds, self.q, self.qd);
+    }
+}
+
+/// Which accelerations `fluid_force` takes.
+#[derive(Clone, Copy)]
+enum Inertia {
+    Drift,
+    Accelerations,
+}
+
+/// ν(t) − k (u − rest) − c u̇ of a torque-driven joint.
+pub(crate) fn joint_torque<R: Real>(model: &Model<'_, R>, coordinate: usize, t: R, channels: &[R], u: R, du: R) -> R {
+    let Some(c) = model.coordinates.get(coordinate) else { return R::NAN };
+    let [torque, _, _] = c.signal.evaluate(t, model.store, channels);
+    torque - c.stiffness * (u - c.rest) - c.damping * du
+}
+
+/// Adds the bodies' own mass times accelerations.
+fn add_body_inertia<R: Real>(model: &Model<'_, R>, w: &[R], force: &mut [R]) {
+    for (i, l) in model.links.iter().enumerate() {
+        let (a, f) = (twist_of(w, i), twist_of(force, i));
+        put_three(force, i, f.linear + a.linear * l.mass, f.angular + a.angular * l.inertia);
+    }
+}
+
+/// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
+fn lone_momentum<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, v: &[R], out: &mut [R]) {
+    let turn = poses.get(0);
+    let v = twist_of(v, 0);
+    let b = turn.unturned(v.linear);
+    let m = &model.head.lone_added_mass;
+    let row = |r: usize| {
+        m.get(r)
+            .zip(m.get(r + 3))
+            .zip(m.get(r + 6))
+            .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
+    };
+    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * model.head.fluid_density;
+    put_three(out, 0, linear, row(2) * model.head.fluid_density);
+}
+
+/// −G q̇ of a lone body: its circulation impulse turns with it.
+pub(crate) fn add_lone_circulation<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], force: &mut [R]) {
+    let Some((body, _)) = model.boundary(0) else { return };
+    let [px, py, _] = model.head.lone_impulse;
+    let p = poses.get(0).turned(crate::scalar::complex(px, py));
+    let v = twist_of(qd, 0);
+    let linear = crate::scalar::perp(v.linear) * body.circulation - crate::scalar::perp(p) * v.angular;
+    let angular = v.linear.im * p.re - v.linear.re * p.im;
+    let f = twist_of(force, 0);
+    let density = model.head.fluid_density;
+    put_three(force, 0, f.linear - linear * density, f.angular - angular * density);
+}

@@ -1,0 +1,233 @@
+//! Placement of nodes along an outline: an explicit map t → s that crowds equidistant s at chosen parameters.
+//!
+//! A *ladder* stands at a parameter t and resolves structure down to the scale β there: rungs at β, 3β, 9β, …
+//! below `top`. Every rung adds the primitive of a Poisson kernel,
+//!
+//! s(t) = [t + Σ w S(t − tₘ; bₘ)] / (1 + Σ w),  S(v; b) = v − 2 arg(1 − e^(−b + iv)),
+//!
+//! an increasing function that is analytic in |Im t| < min b, so that the trapezoid rule in s keeps its spectral
+//! accuracy. Corners and bends bring permanent ladders; a ladder at a contact is one more entry of the list.
+
+use crate::scalar::{Complex, Real, cexp, cexpm1, cln_1p, complex, csin_cos};
+use crate::status::{Error, Result, Status};
+use crate::workspace::{at, part, put};
+
+/// Reals of a rung: place, scale b, weight, e^(−b/2), sinh(b/2), sinh(b)/2.
+const RUNG: usize = 6;
+/// Reals before the rungs: weight of the plain parameter, value of the map at t = 0.
+const HEAD: usize = 2;
+/// Full weight of a rung.
+const WEIGHT: f64 = 0.5;
+/// Largest scale at which a ladder still acts.
+pub const TOP: f64 = 1.5;
+
+/// A request for nodes around the parameter `t`, down to the scale `beta` (both in the parameter).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ladder<R> {
+    /// Where.
+    pub t: R,
+    /// Smallest scale to resolve.
+    pub beta: R,
+    /// Scale at which the ladder has faded out, at most [`TOP`].
+    pub top: R,
+}
+
+impl<R: Real> Ladder<R> {
+    /// Scales and raw weights of the rungs. The last one fades with its distance from `top`, so that the map
+    /// changes continuously when a rung enters or leaves.
+    fn rungs(self) -> impl Iterator<Item = (R, R)> {
+        // Below this scale neighbouring nodes would not be distinct numbers.
+        let beta = self.beta.max(R::EPSILON * R::lit(128.0));
+        let (three, top) = (R::lit(3.0), self.top.min(R::lit(TOP)));
+        core::iter::successors(Some(beta), move |b| Some(*b * three)).take_while(move |b| *b < top).enumerate().map(
+            move |(m, b)| {
+                let first = if m == 0 { R::lit(1.5) } else { R::one() };
+                (b, R::lit(WEIGHT) * first * R::one().min((top / b).ln() / three.ln()))
+            },
+        )
+    }
+
+    /// Number of rungs.
+    pub fn count(self) -> usize {
+        self.rungs().count()
+    }
+}
+
+/// Number of reals that a grading of this many rungs occupies; `None` on overflow.
+pub fn grading_len(rungs: usize) -> Option<usize> {
+    rungs.checked_mul(RUNG)?.checked_add(HEAD)
+}
+
+/// Writes the grading of these ladders into `store` and returns its number of rungs.
+///
+/// Rungs that ask for the same thing share one weight; the result does not depend on the ladders' order
+/// (up to rounding). Cost: quadratic in the number of rungs. Errors: `MemoryTooSmall`.
+pub fn write_grading<R: Real>(ladders: impl Iterator<Item = Ladder<R>>, store: &mut [R]) -> Result<usize> {
+    let (head, body) = store.split_at_mut_checked(HEAD).ok_or(Status::MemoryTooSmall)?;
+    let mut free = body.chunks_exact_mut(RUNG);
+    let mut count = 0;
+    for ladder in ladders {
+        for (b, weight) in ladder.rungs() {
+            let Some([t, scale, _, raw, log, _]) = free.next() else {
+                return Err(Status::MemoryTooSmall.into());
+            };
+            (*t, *scale, *raw, *log) = (ladder.t, b, weight, b.ln());
+            count += 1;
+        }
+    }
+    let three = R::lit(3.0);
+    let mut total = R::one();
+    for i in 0..count {
+        let Some(&[t, b, _, raw, log, _]) = body.chunks_exact(RUNG).nth(i) else {
+            continue;
+        };
+        let mut crowd = R::one();
+        for (j, other) in body.chunks_exact(RUNG).take(count).enumerate() {
+            let &[t2, b2, _, raw2, log2, _] = other else {
+                continue;
+            };
+            let near = R::one() - (log - log2).abs() / three.ln();
+            if j != i && near > R::zero() {
+                let d = R::TWO * ((t - t2) * R::HALF).sin() / b.max(b2);
+                crowd += R::one().min(raw2 / R::lit(WEIGHT)) * near / (R::one() + d * d);
+            }
+        }
+        total += raw / crowd;
+        put(body, i * RUNG + 2, raw / crowd);
+    }
+    for rung in body.chunks_exact_mut(RUNG).take(count) {
+        if let [_, b, weight, decay, sh, half_sinh] = rung {
+            let half = *b * R::HALF;
+            *weight /= total;
+            (*decay, *sh, *half_sinh) = ((-half).exp(), half.sinh(), half.sinh() * half.cosh());
+        }
+    }
+    if let [plain, origin] = head {
+        *plain = R::one() / total;
+        *origin = R::zero();
+    }
+    let origin = Grading::read(store, count).jet(R::zero())[0];
+    put(store, 1, origin);
+    Ok(count)
+}
+
+/// The map t → s of an outline, s(0) = 0, s(t + 2π) = s(t) + 2π.
+#[derive(Clone, Copy, Debug)]
+pub struct Grading<'a, R> {
+    plain: R,
+    origin: R,
+    rungs: &'a [R],
+}
+
+impl<'a, R: Real> Grading<'a, R> {
+    /// The identity.
+    pub fn uniform() -> Self {
+        Grading { plain: R::one(), origin: R::zero(), rungs: &[] }
+    }
+
+    /// The grading that [`write_grading`] left in `store`.
+    pub fn read(store: &'a [R], rungs: usize) -> Self {
+        let len = rungs.saturating_mul(RUNG);
+        Grading { plain: at(store, 0), origin: at(store, 1), rungs: part(store, HEAD, len) }
+    }
+
+    /// Number of rungs.
+    pub const fn rungs(&self) -> usize {
+        self.rungs.len() / RUNG
+    }
+
+    fn each(&self) -> impl Iterator<Item = [R; RUNG]> + '_ {
+        self.rungs.as_chunks::<RUNG>().0.iter().copied()
+    }
+
+    /// s, s′, s″ at a real parameter. Cost: one sine and one arc tangent per rung.
+    pub fn jet(&self, t: R) -> [R; 3] {
+        let mut sum = [self.plain * t - self.origin, self.plain, R::zero()];
+        for [place, _, weight, decay, sh, half_sinh] in self.each() {
+            let v = t - place;
+            let (s, c) = (v * R::HALF).sin_cos();
+            let m = sh * sh + s * s;
+            let slope = weight * half_sinh / m;
+            sum[0] += weight * (v + R::TWO * (decay * s * c).atan2(sh + decay * s * s));
+            sum[1] += slope;
+            sum[2] -= slope * s * c / m;
+        }
+        sum
+    }
+
+    /// s′ at a complex parameter.
+    pub fn slope(&self, t: Complex<R>) -> Complex<R> {
+        let mut sum = complex(self.plain, R::zero());
+        for [place, _, weight, _, sh, half_sinh] in self.each() {
+            let (s, _) = csin_cos((t - place) * R::HALF);
+            sum += complex(weight * half_sinh, R::zero()) / (s * s + sh * sh);
+        }
+        sum
+    }
+
+    /// s(t + u) − s(t) to relative accuracy in the complex offset u, |Im u| below the smallest rung's scale.
+    pub fn difference(&self, t: R, u: Complex<R>) -> Complex<R> {
+        let iu = complex(-u.im, u.re);
+        let (forth, back) = (cexpm1(iu), cexpm1(-iu));
+        let mut sum = u * self.plain;
+        for [place, b, weight, ..] in self.each() {
+            // ln of (1 − e^(−b ± i(v + u))) / (1 − e^(−b ± iv))
+            let z = complex(-b, t - place);
+            let ratio = cexp(z) / cexpm1(z);
+            let turn = cln_1p(ratio * forth) - cln_1p(ratio.conj() * back);
+            sum += (u + complex(-turn.im, turn.re)) * weight;
+        }
+        sum
+    }
+
+    /// The t in [0, 2π] at which the map takes the value `s` in [0, 2π], starting from `guess`.
+    ///
+    /// Newton's method inside a shrinking bracket. The best iterate is kept, so a converged one is never moved
+    /// again by rounding. Errors: `Internal` when the residual exceeds what rounding explains.
+    pub fn inverse(&self, s: R, guess: R) -> Result<R> {
+        let (mut low, mut high) = (R::zero(), R::TAU);
+        let mut t = guess.max(low).min(high);
+        let (mut best, mut residual, mut allowed) = (t, R::MAX, R::zero());
+        let mut last = R::MAX;
+        for _ in 0..160 {
+            let [value, slope, _] = self.jet(t);
+            let f = value - s;
+            if f.abs() < residual {
+                (best, residual) = (t, f.abs());
+                allowed = R::EPSILON * (R::lit(450.0) + R::lit(9.0) * slope);
+            }
+            if f.abs() <= R::EPSILON * (R::TWO + slope * t * R::HALF) {
+                break;
+            }
+            if f > R::zero() {
+                high = t;
+            } else {
+                low = t;
+            }
+            let newton = t - f / slope;
+            let middle = low + (high - low) * R::HALF;
+            let slow = f.abs() > last * R::HALF;
+            last = f.abs();
+            let next = if newton > low && newton < high && !slow { newton } else { middle };
+            if next == t || !(low < high) {
+                break;
+            }
+            t = next;
+        }
+        if residual <= allowed {
+            Ok(best)
+        } else {
+            Err(Error::new(Status::Internal).of("node residual", residual.to_f64()))
+        }
+    }
+
+    /// Parameter of node `k` of `n`: s = 2πk/n. Errors: `OutOfRange` unless k < n, `Internal` as in
+    /// [`inverse`](Self::inverse).
+    pub fn node(&self, k: usize, n: usize) -> Result<R> {
+        if k >= n {
+            return Err(Error::new(Status::OutOfRange).of("node", k as f64));
+        }
+        let s = R::TAU * R::count(k) / R::count(n);
+        if k == 0 || self.rungs.is_empty() { Ok(s) } else { self.inverse(s, s) }
+    }
+}

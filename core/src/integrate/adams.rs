@@ -1,0 +1,403 @@
+//! Adams–Bashforth–Moulton of variable step and order, by differences (Shampine & Gordon 1975).
+
+use super::control::{Estimate, step_factor};
+use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
+use super::{Counters, System, all_finite, evaluate, finite, same_length};
+use crate::scalar::Real;
+use crate::status::{Error, Result, Status};
+use crate::workspace::{buffers, copy, part};
+
+/// Predicts at order k, evaluates, corrects at order k + 1, evaluates (PECE), k = 1 … 12: the method of
+/// Matlab's `ode113`. Step and order follow the estimated error of each step,
+/// `|eᵢ| ≤ max(relative |yᵢ|, absolute)` for every unknown i.
+///
+/// Time and state are summed with compensation, so that many short steps do not add up their rounding.
+/// The cost of a step, besides its two evaluations, is about 15 k operations for each unknown and 2 k² for
+/// the coefficients.
+#[derive(Clone, Copy, Debug)]
+pub struct Adams<R> {
+    relative: R,
+    absolute: R,
+    max_step: R,
+    dim: usize,
+    time: R,
+    /// The part of the time that `time` cannot hold.
+    time_rest: R,
+    /// Is the rate at the state known?
+    prepared: bool,
+    /// Length proposed for the next step; 0 if it is to be estimated.
+    proposed: R,
+    /// Order of the next step.
+    order: usize,
+    /// Start-up: order and step grow with every step until an error estimate objects.
+    starting: bool,
+    /// The last step, signed; 0 after a start.
+    last_step: R,
+    /// Order of the last step; 0 after a start.
+    last_order: usize,
+    /// Number of last steps that had the same length.
+    equal_steps: usize,
+    /// ψᵢ: lengths of the last i steps together.
+    spans: [R; MAX_ORDER],
+    counters: Counters,
+}
+
+buffers! {
+    struct Buffers(dim: usize) {
+        state: *dim,
+        rate: *dim,
+        /// The differences φ₁ … φₖ₊₂, unknown by unknown.
+        history: dim.saturating_mul(COLUMNS),
+        /// The part of the state that `state` cannot hold.
+        rest: *dim,
+        trial: *dim, trial_rest: *dim, trial_rate: *dim,
+    }
+}
+
+impl<R: Real> Adams<R> {
+    /// An integrator with the tolerances of each step's error: `relative` and `absolute`, in the units of
+    /// the state, and optionally a longest step (a system at rest that is driven later could otherwise be
+    /// stepped over).
+    ///
+    /// # Errors
+    /// `BadTolerance` unless `relative ≥ 4 EPSILON` and `absolute > 0`, both finite; `BadStep`.
+    pub fn new(relative: R, absolute: R, max_step: Option<R>) -> Result<Self> {
+        let floor = R::lit(4.0) * R::EPSILON;
+        if !relative.is_finite() || relative < floor {
+            return Err(Error::new(Status::BadTolerance).of("relative", relative.to_f64()));
+        }
+        if !absolute.is_finite() || absolute < R::TINY {
+            return Err(Error::new(Status::BadTolerance).of("absolute", absolute.to_f64()));
+        }
+        let max_step = max_step.unwrap_or(R::MAX);
+        if !max_step.is_finite() || max_step < R::TINY {
+            return Err(Error::new(Status::BadStep).of("max_step", max_step.to_f64()));
+        }
+        Ok(Adams {
+            relative,
+            absolute,
+            max_step,
+            dim: 0,
+            time: R::zero(),
+            time_rest: R::zero(),
+            prepared: false,
+            proposed: R::zero(),
+            order: 1,
+            starting: true,
+            last_step: R::zero(),
+            last_order: 0,
+            equal_steps: 0,
+            spans: [R::zero(); MAX_ORDER],
+            counters: Counters::default(),
+        })
+    }
+
+    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn work_len(dim: usize) -> Option<usize> {
+        Buffers::<R>::len(&dim)
+    }
+
+    /// Starts at the state `y` at time `t`, without evaluating anything yet. The counters go on.
+    ///
+    /// # Errors
+    /// `NotFinite`, `MemoryTooSmall`; the integrator is then as it was.
+    pub fn start(&mut self, t: R, y: &[R], work: &mut [R]) -> Result<()> {
+        finite(t, "time")?;
+        all_finite(y, Status::NotFinite, "state")?;
+        let b = Buffers::split(&y.len(), work)?;
+        copy(b.state, y);
+        b.rest.fill(R::zero());
+        b.rate.fill(R::NAN);
+        (self.dim, self.time, self.time_rest) = (y.len(), t, R::zero());
+        self.restart();
+        Ok(())
+    }
+
+    /// Starts anew at the present state: to be called when the right-hand side has jumped.
+    pub fn restart(&mut self) {
+        self.prepared = false;
+        self.forget();
+    }
+
+    /// Back to order 1 and a step to be estimated.
+    fn forget(&mut self) {
+        (self.proposed, self.order, self.starting) = (R::zero(), 1, true);
+        (self.last_step, self.last_order, self.equal_steps) = (R::zero(), 0, 0);
+    }
+
+    /// Makes the rate at the present state known after a start; a step does it by itself. One evaluation,
+    /// or none.
+    ///
+    /// # Errors
+    /// Those of the right-hand side, `NonFiniteState`, `Length`, `MemoryTooSmall`; nothing is changed.
+    pub fn prepare<S: System<R> + ?Sized>(&mut self, system: &mut S, work: &mut [R]) -> Result<()> {
+        same_length(self.dim, system.dim())?;
+        let b = Buffers::split(&self.dim, work)?;
+        if self.prepared {
+            return Ok(());
+        }
+        evaluate(system, &mut self.counters, self.time, b.state, b.trial_rate)?;
+        copy(b.rate, b.trial_rate);
+        for (column, rate) in columns_mut(b.history).zip(&*b.rate) {
+            *column = [R::zero(); COLUMNS];
+            column[0] = *rate;
+        }
+        self.prepared = true;
+        Ok(())
+    }
+
+    /// Time of the present state.
+    pub fn time(&self) -> R {
+        self.time
+    }
+
+    /// The state at [`time`](Self::time).
+    pub fn state<'w>(&self, work: &'w [R]) -> &'w [R] {
+        part(work, 0, self.dim)
+    }
+
+    /// The rate at [`time`](Self::time); NaN between a start and the first step (see
+    /// [`prepare`](Self::prepare)).
+    pub fn rate<'w>(&self, work: &'w [R]) -> &'w [R] {
+        part(work, self.dim, self.dim)
+    }
+
+    /// Length of the last step, signed; 0 after a start. The dense output is good from
+    /// `time() - last_step()` to `time()`.
+    pub fn last_step(&self) -> R {
+        self.last_step
+    }
+
+    /// Order k of the last step's predictor (its result is of order k + 1); 0 after a start.
+    pub fn last_order(&self) -> usize {
+        self.last_order
+    }
+
+    /// What has been done since the integrator was made.
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Makes one step towards `t_stop`, never beyond it, with as many trials as it takes; a step that
+    /// reaches `t_stop` ends there exactly. Does nothing at `t_stop`. `t_stop` may lie before the present
+    /// time; turning round starts anew.
+    ///
+    /// A trial at which the right-hand side fails with `Contact`, `Singular` or `NonFiniteState`, or gives
+    /// rates that are not finite, is repeated with a quarter of the step.
+    ///
+    /// # Errors
+    /// `StepTooSmall` if the tolerance cannot be met, else the error of the last trial; `NotFinite`,
+    /// `Length`, `MemoryTooSmall`. The integrator is then as it was after its last step (but for the
+    /// counters), and may go on.
+    pub fn step<S: System<R> + ?Sized>(&mut self, system: &mut S, t_stop: R, work: &mut [R]) -> Result<()> {
+        finite(t_stop, "t_stop")?;
+        if t_stop == self.time {
+            return Ok(());
+        }
+        self.prepare(system, work)?;
+        let mut b = Buffers::split(&self.dim, work)?;
+        let mut next = *self;
+        let outcome = next.search(system, t_stop, &mut b);
+        match outcome {
+            Ok(()) => *self = next,
+            Err(_) => self.counters = next.counters,
+        }
+        outcome
+    }
+
+    /// The state and its rate at `t_out`, between the last two states (or slightly outside), to the order
+    /// of the method. After a start, before any step: along the tangent.
+    ///
+    /// # Errors
+    /// `NotFinite`, `Length`, `MemoryTooSmall`; nothing is written.
+    pub fn interpolate(&self, t_out: R, work: &[R], y_out: &mut [R], dydt_out: &mut [R]) -> Result<()> {
+        finite(t_out, "t_out")?;
+        same_length(self.dim, y_out.len())?;
+        same_length(self.dim, dydt_out.len())?;
+        if Self::work_len(self.dim).is_none_or(|need| work.len() < need) {
+            return Err(Status::MemoryTooSmall.into());
+        }
+        let s = (t_out - self.time) - self.time_rest;
+        if t_out == self.time || self.last_order == 0 {
+            for ((y, f), (y0, f0)) in y_out.iter_mut().zip(dydt_out).zip(self.state(work).iter().zip(self.rate(work))) {
+                (*y, *f) = (if t_out == self.time { *y0 } else { *y0 + s * *f0 }, *f0);
+            }
+            return Ok(());
+        }
+        let (w, r) = dense(s, &self.spans, self.last_order);
+        let history = part(work, 2 * self.dim, self.dim.saturating_mul(COLUMNS)).as_chunks::<COLUMNS>().0;
+        for ((y, f), (column, y0)) in y_out.iter_mut().zip(dydt_out).zip(history.iter().zip(self.state(work))) {
+            let (mut slope, mut rate) = (R::zero(), R::zero());
+            for ((phi, w), r) in column.iter().zip(&w).zip(&r).take(self.last_order + 1).rev() {
+                slope += *w * *phi;
+                rate += *r * *phi;
+            }
+            (*y, *f) = (*y0 + s * slope, rate);
+        }
+        Ok(())
+    }
+
+    /// Tries steps until one is accepted. `b` is changed in its trial parts only, until then.
+    fn search<S: System<R> + ?Sized>(&mut self, system: &mut S, t_stop: R, b: &mut Buffers<'_, R>) -> Result<()> {
+        let remaining = (t_stop - self.time) - self.time_rest;
+        if self.last_step * remaining < R::zero() {
+            self.forget();
+        }
+        if self.proposed == R::zero() {
+            self.proposed = self.first_step(remaining.abs(), b);
+        }
+        // Shorter steps would be lost in the rounding of the time, or (near time 0) are beyond hope.
+        let hopeless = R::EPSILON * R::EPSILON * self.proposed.min(remaining.abs());
+        let shortest = (R::lit(16.0) * R::EPSILON * self.time.abs()).max(hopeless).max(R::TINY);
+        let mut length = self.proposed.max(shortest);
+        let mut failures = 0;
+        loop {
+            let (step, last) = self.fit(length, remaining);
+            let time = if last { t_stop } else { self.time + (self.time_rest + step) };
+            let formula = Formula::new(self.order, step, &self.spans);
+            let trial = self.attempt(system, &formula, time, b);
+            let (error, shorter) = match trial {
+                Ok(estimate) if estimate.step <= R::one() => {
+                    match evaluate(system, &mut self.counters, time, b.trial, b.trial_rate) {
+                        Ok(()) => {
+                            self.accept(&formula, &estimate, time, last, b);
+                            return Ok(());
+                        }
+                        Err(e) => (Some(e), R::lit(0.25)),
+                    }
+                }
+                Ok(estimate) => {
+                    if estimate.prefers_lower {
+                        self.order = self.order.saturating_sub(1).max(1);
+                    }
+                    (None, estimate.retry_factor(failures))
+                }
+                Err(e) => (Some(e), R::lit(0.25)),
+            };
+            self.counters.rejected += 1;
+            let fatal = error.filter(|e| !recoverable(e));
+            if fatal.is_some() || length <= shortest {
+                let small = || Error::new(Status::StepTooSmall).of("time", self.time.to_f64());
+                return Err(error.unwrap_or_else(small));
+            }
+            failures += 1;
+            self.starting = false;
+            if failures >= 3 {
+                self.order = 1;
+            }
+            length = (step.abs() * shorter).max(shortest);
+        }
+    }
+
+    /// Length of the first step: the error of Euler's step, with the rate as the only scale known, a
+    /// sixteenth of the tolerance; at most a tenth of the way.
+    fn first_step(&self, remaining: R, b: &Buffers<'_, R>) -> R {
+        let rate = b.rate.iter().zip(&*b.state).fold(R::zero(), |m, (f, y)| m.max(f.abs() / self.weight(*y)));
+        let length = (remaining * R::lit(0.1)).min(self.max_step);
+        let fastest = R::lit(4.0) * self.relative.sqrt() * rate;
+        if length * fastest > R::one() { R::one() / fastest } else { length }
+    }
+
+    /// The error allowed in an unknown, from its value.
+    fn weight(&self, y: R) -> R {
+        (self.relative * y.abs()).max(self.absolute)
+    }
+
+    /// A step of about `length` towards the stop, `remaining` away, and whether it ends there. The last
+    /// but one step is half the way, lest the last be very short.
+    fn fit(&self, length: R, remaining: R) -> (R, bool) {
+        let length = length.min(self.max_step);
+        let room = remaining.abs();
+        if room <= (R::lit(1.1) * length).min(self.max_step) {
+            (remaining, true)
+        } else if room < R::TWO * length {
+            (remaining * R::HALF, false)
+        } else {
+            (if remaining < R::zero() { -length } else { length }, false)
+        }
+    }
+
+    /// Predicts, evaluates, estimates the errors and corrects: the corrected state is in `trial`.
+    fn attempt<S: System<R> + ?Sized>(
+        &mut self,
+        system: &mut S,
+        formula: &Formula<R>,
+        time: R,
+        b: &mut Buffers<'_, R>,
+    ) -> Result<Estimate<R>> {
+        let h = formula.step;
+        for ((p, column), (y, rest)) in b.trial.iter_mut().zip(columns(b.history)).zip(b.state.iter().zip(&*b.rest)) {
+            *p = *y + (h * formula.predicted(column).slope + *rest);
+        }
+        all_finite(b.trial, Status::NonFiniteState, "state")?;
+        evaluate(system, &mut self.counters, time, b.trial, b.trial_rate)?;
+
+        // The largest weighted differences of orders k + 1, k, k − 1.
+        let (mut this, mut lower, mut lowest) = (R::zero(), R::zero(), R::zero());
+        let known = b.state.iter().zip(&*b.rest).zip(columns(b.history)).zip(&*b.trial_rate);
+        let corrected = b.trial.iter_mut().zip(b.trial_rest.iter_mut());
+        for ((((y, rest), column), f), (new, new_rest)) in known.zip(corrected) {
+            let predicted = formula.predicted(column);
+            let jump = *f - predicted.rate;
+            let scale = R::one() / self.weight(*y);
+            this = this.max(jump.abs() * scale);
+            lower = lower.max((predicted.last + jump).abs() * scale);
+            lowest = lowest.max((predicted.before_last + jump).abs() * scale);
+            let increment = h * (predicted.slope + formula.correct * jump) + *rest;
+            *new = *y + increment;
+            *new_rest = increment - (*new - *y);
+        }
+        all_finite(b.trial, Status::NonFiniteState, "state")?;
+
+        let estimate = Estimate::new(formula, this, lower, lowest);
+        all_finite(&[estimate.step, estimate.this], Status::NonFiniteState, "error estimate")?;
+        Ok(estimate)
+    }
+
+    /// Moves to the trial state, whose rate is in `trial_rate`, and chooses order and step of the next.
+    fn accept(&mut self, formula: &Formula<R>, estimate: &Estimate<R>, time: R, last: bool, b: &mut Buffers<'_, R>) {
+        let k = formula.order;
+        // Equal steps count only as far as the differences of their order existed.
+        let equal = if formula.step == self.last_step { self.equal_steps } else { 0 };
+        self.equal_steps = if equal <= self.last_order { equal + 1 } else { equal };
+
+        let mut higher = R::zero();
+        for ((column, rate), y) in columns_mut(b.history).zip(&*b.trial_rate).zip(&*b.state) {
+            higher = higher.max(formula.advance(column, *rate).abs() / self.weight(*y));
+        }
+        let higher = formula.step.abs() * higher * moulton(k + 1);
+        copy(b.state, b.trial);
+        copy(b.rest, b.trial_rest);
+        copy(b.rate, b.trial_rate);
+        let advance = self.time_rest + formula.step;
+        self.time_rest = if last { R::zero() } else { advance - (time - self.time) };
+        self.time = time;
+        self.spans = formula.spans;
+        (self.last_step, self.last_order) = (formula.step, k);
+        self.counters.steps += 1;
+
+        self.starting &= !estimate.prefers_lower && k < MAX_ORDER;
+        let factor = if self.starting {
+            self.order = k + 1;
+            R::TWO
+        } else {
+            let (order, error) = estimate.next_order((k < self.equal_steps).then_some(higher));
+            self.order = order;
+            step_factor(order, error)
+        };
+        self.proposed = factor * formula.step.abs();
+    }
+}
+
+/// Does the error belong to the trial state, so that a shorter step may succeed?
+fn recoverable(error: &Error) -> bool {
+    matches!(error.status, Status::Contact | Status::Singular | Status::NonFiniteState)
+}
+
+fn columns<R>(history: &[R]) -> core::slice::Iter<'_, [R; COLUMNS]> {
+    history.as_chunks().0.iter()
+}
+
+fn columns_mut<R>(history: &mut [R]) -> core::slice::IterMut<'_, [R; COLUMNS]> {
+    history.as_chunks_mut().0.iter_mut()
+}

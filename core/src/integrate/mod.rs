@@ -1,0 +1,90 @@
+//! Explicit integrators of ordinary differential equations `y' = f(t, y)` in memory given by the caller.
+//!
+//! - [`rk4`]: the classical Runge–Kutta step of order 4, fixed step, four evaluations.
+//! - [`abm4`]: Adams–Bashforth–Moulton of order 4, fixed step, two evaluations.
+//! - [`adams`]: Adams–Bashforth–Moulton of variable step and order 1–12 (the method of Matlab's
+//!   `ode113`), with error control and dense output, two evaluations.
+//!
+//! The integrators are small `Copy` values; everything that grows with the dimension lies in a work slice
+//! of `work_len(dim)` numbers, which belongs to one integrator from one call to the next.
+
+use crate::scalar::Real;
+use crate::status::{Error, Result, Status};
+
+pub mod abm4;
+pub mod adams;
+mod control;
+mod formula;
+pub mod rk4;
+#[cfg(test)]
+mod tests;
+
+pub use abm4::Abm4;
+pub use adams::Adams;
+pub use rk4::Rk4;
+
+/// The right-hand side of `y' = f(t, y)`.
+pub trait System<R> {
+    /// Number of unknowns.
+    fn dim(&self) -> usize;
+
+    /// Writes `f(t, y)` to `dydt`; both slices have [`dim`](Self::dim) elements.
+    ///
+    /// # Errors
+    /// `Contact`, `Singular` and `NonFiniteState` say that *this* state has no rate: an integrator that
+    /// chooses its steps then tries a shorter one. Any other error ends the step at once.
+    fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()>;
+}
+
+/// What an integrator has done since it was made.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Counters {
+    /// Evaluations of the right-hand side, failed ones included.
+    pub evaluations: u64,
+    /// Accepted steps.
+    pub steps: u64,
+    /// Trial steps given up: error too large, or no rate at the trial state.
+    pub rejected: u64,
+}
+
+/// Evaluates the right-hand side and refuses rates that are not finite.
+fn evaluate<R: Real, S: System<R> + ?Sized>(
+    system: &mut S,
+    counters: &mut Counters,
+    t: R,
+    y: &[R],
+    dydt: &mut [R],
+) -> Result<()> {
+    counters.evaluations += 1;
+    system.rhs(t, y, dydt)?;
+    all_finite(dydt, Status::NonFiniteState, "rate")
+}
+
+/// Refuses values that are not finite.
+fn all_finite<R: Real>(values: &[R], status: Status, what: &'static str) -> Result<()> {
+    match values.iter().find(|x| !x.is_finite()) {
+        Some(x) => Err(Error::new(status).of(what, x.to_f64())),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a time or step of the caller that is not finite.
+fn finite<R: Real>(x: R, what: &'static str) -> Result<()> {
+    all_finite(&[x], Status::NotFinite, what)
+}
+
+/// Refuses what no fixed step can be made of: a time, step or state that is not finite, a step that does
+/// not move the time, a state of the wrong length.
+fn check_step<R: Real, S: System<R> + ?Sized>(system: &S, t: R, h: R, y: &[R]) -> Result<()> {
+    finite(t, "time")?;
+    if !h.is_finite() || h == R::zero() {
+        return Err(Error::new(Status::BadStep).of("step", h.to_f64()));
+    }
+    same_length(system.dim(), y.len())?;
+    all_finite(y, Status::NonFiniteState, "state")
+}
+
+/// Refuses a buffer of the wrong length.
+fn same_length(want: usize, got: usize) -> Result<()> {
+    if want == got { Ok(()) } else { Err(Error::new(Status::Length).of("length", got as f64)) }
+}

@@ -1,0 +1,84 @@
+//! A lone rigid body: its added mass and the impulse of its circulation are constant in its own frame, so they are
+//! computed once and no boundary system is solved while stepping (Kirchhoff's equations).
+
+use crate::boundary::{BoundaryRecord, fill_self_block};
+use crate::lu::{Factors, factor};
+use crate::scalar::{Complex, Real, cln, complex, dot};
+use crate::status::{Result, Status};
+use crate::workspace::{at, put, take};
+
+/// Reals of scratch for `n` nodes.
+pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {
+    let blocks = if circulation { 2 } else { 1 };
+    n.checked_mul(n)
+        .and_then(|b| b.checked_mul(blocks))
+        .and_then(|b| b.checked_add(5 * n))
+        .ok_or(Status::SizeOverflow.into())
+}
+
+/// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame.
+pub(crate) fn constants<R: Real>(
+    body: &BoundaryRecord<R>,
+    store: &[R],
+    scratch: &mut [R],
+    circulation: bool,
+) -> Result<([R; 9], [R; 3])> {
+    let n = body.nodes;
+    let nodes = body.nodes(store);
+    let h = nodes.step;
+    let mut rest = scratch;
+    let system = take(&mut rest, n * n + 4 * n)?;
+    let pivots = take(&mut rest, n)?;
+    let regular = if circulation { take(&mut rest, n * n)? } else { &mut [] };
+    let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
+    fill_self_block(body, store, block, regular)?;
+    let potential = |k: usize| [at(nodes.x, k), at(nodes.y, k), at(nodes.chi, k)];
+    // The circulatory flow: on an ellipse or disc its stream function is constant and its potential 0.
+    let point = circulation && body.core.axes[0] == R::zero();
+    for k in 0..n {
+        for (c, x) in potential(k).into_iter().enumerate() {
+            put(columns, c * n + k, -R::TWO * x);
+        }
+        let mut sum = R::zero();
+        if point {
+            for (j, x) in nodes.points().enumerate() {
+                sum += at(regular, j * n + k) * cln(x - body.core.centre).re;
+            }
+        }
+        put(columns, 3 * n + k, sum * body.circulation / R::TAU);
+    }
+    factor(system, n, n, pivots)?;
+    let (lu, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
+    for column in columns.chunks_exact_mut(n.max(1)) {
+        Factors { lu, ld: n, pivots }.back_substitute(column);
+    }
+    let (mut mass, mut impulse) = ([R::zero(); 9], [R::zero(); 3]);
+    let strength = body.circulation / R::TAU;
+    for (k, (x, d)) in nodes.points().zip(nodes.tangents()).enumerate() {
+        let flux = [-d.im * h, d.re * h, dot(x, d) * h];
+        let chi = potential(k);
+        for (row, b) in flux.into_iter().enumerate() {
+            for (column, chi) in chi.into_iter().enumerate() {
+                let psi = at(columns, column * n + k) + chi;
+                if let Some(m) = mass.get_mut(3 * column + row) {
+                    *m += b * psi;
+                }
+            }
+            if let Some(p) = impulse.get_mut(row) {
+                *p += b * at(columns, 3 * n + k);
+            }
+        }
+        if circulation {
+            let [_, slope, _] = crate::forces::circulation::core_flow(&body.core, x);
+            // dn = q Re(ν L'), ν = i h Γ'
+            let nu: Complex<R> = complex(-d.im, d.re) * h;
+            let normal = strength * (nu * slope).re;
+            for (p, s) in impulse.iter_mut().zip([x.im, -x.re, -dot(x, x) * R::HALF]) {
+                *p -= s * normal;
+            }
+        }
+    }
+    let [a, b, c, d, e, f, g, i, j] = mass;
+    let (bd, cg, fi) = ((b + d) * R::HALF, (c + g) * R::HALF, (f + i) * R::HALF);
+    Ok(([a, bd, cg, bd, e, fi, cg, fi, j], impulse))
+}

@@ -1,0 +1,76 @@
+//! Models and simulations that own their memory (feature `alloc`).
+
+use crate::boundary::BoundaryRecord;
+use crate::compile::ModelMemory;
+use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
+use crate::scalar::Real;
+use crate::scene::Scene;
+use crate::sim::{Method, Sim, SimHead};
+use crate::status::Result;
+use alloc::{sync::Arc, vec, vec::Vec};
+
+/// A compiled scene that owns its memory. `Send + Sync`.
+#[derive(Clone, Debug)]
+pub struct ModelBuf<R> {
+    head: ModelHead<R>,
+    links: Vec<LinkRecord<R>>,
+    coordinates: Vec<CoordinateRecord<R>>,
+    boundaries: Vec<BoundaryRecord<R>>,
+    reals: Vec<R>,
+}
+
+impl<R: Real> ModelBuf<R> {
+    /// Compiles a scene.
+    ///
+    /// # Errors
+    /// As [`Model::init`].
+    pub fn new(scene: &Scene<'_, R>) -> Result<Self> {
+        let need = Model::requirement(scene)?;
+        let mut links = vec![LinkRecord::default(); need.links];
+        let mut coordinates = vec![CoordinateRecord::default(); need.coordinates];
+        let mut boundaries = vec![BoundaryRecord::default(); need.boundaries];
+        let mut reals = vec![R::zero(); need.reals];
+        let mut memory = ModelMemory {
+            links: &mut links,
+            coordinates: &mut coordinates,
+            boundaries: &mut boundaries,
+            reals: &mut reals,
+        };
+        let head = Model::init(scene, &mut memory)?;
+        Ok(ModelBuf { head, links, coordinates, boundaries, reals })
+    }
+
+    /// The model's view.
+    pub fn view(&self) -> Model<'_, R> {
+        Model::view(&self.head, &self.links, &self.coordinates, &self.boundaries, &self.reals)
+    }
+}
+
+/// A simulation that owns its memory and shares its model. `Send`.
+#[derive(Clone, Debug)]
+pub struct SimBuf<R> {
+    model: Arc<ModelBuf<R>>,
+    head: SimHead<R>,
+    reals: Vec<R>,
+}
+
+impl<R: Real> SimBuf<R> {
+    /// Starts a simulation at time 0 and the scene's initial state.
+    ///
+    /// # Errors
+    /// As [`Sim::head`] and [`Sim::init`].
+    pub fn new(model: Arc<ModelBuf<R>>, method: Method<R>) -> Result<Self> {
+        let mut head = Sim::head(method)?;
+        let mut reals = vec![R::zero(); Sim::requirement(&model.view())?.reals];
+        Sim::init(model.view(), &mut head, &mut reals)?;
+        Ok(SimBuf { model, head, reals })
+    }
+
+    /// The simulation's view, through which everything is done. O(1).
+    ///
+    /// # Errors
+    /// None in practice: the memory was made for this model.
+    pub fn view(&mut self) -> Result<Sim<'_, R>> {
+        Sim::view(self.model.view(), &mut self.head, &mut self.reals)
+    }
+}

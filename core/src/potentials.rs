@@ -1,0 +1,163 @@
+//! Elementary potentials in density form, and the small vectors that surround them.
+//!
+//! Per link and per unit density of the fluid, in the link's frame: X = (x, y, χ₃) are the potentials of rigid motion
+//! inside, B = h (−y', x', x x' + y y') the fluxes b ds. A u = −2 X v gives the density of the motion v, and
+//! ψ = u + X v its potential on the boundary. The added mass is Bᵀ ψ; its transpose costs no further solve of
+//! its own: M_hᵀ v = Xᵀ (B v − 2 λ) with Aᵀ λ = B v.
+
+use crate::articulation::{put_three, twist_of};
+use crate::boundary::Nodes;
+use crate::lu::{Factors, factor};
+use crate::model::Model;
+use crate::nystrom::{Poses, assemble};
+use crate::scalar::{Complex, Real, complex, dot};
+use crate::status::Result;
+use crate::workspace::{axpy, part, part_mut};
+
+/// Three reals per link, world to link frame (linear parts turned).
+pub(crate) fn to_link_frames<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, world: &[R], out: &mut [R]) {
+    for i in 0..model.links.len() {
+        let v = twist_of(world, i);
+        put_three(out, i, poses.get(model.head.plan.walls + i).unturned(v.linear), v.angular);
+    }
+}
+
+/// Three reals per link, link frame to world, in place, scaled.
+pub(crate) fn to_world<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, scale: R, vector: &mut [R]) {
+    for i in 0..model.links.len() {
+        let v = twist_of(vector, i);
+        put_three(vector, i, poses.get(model.head.plan.walls + i).turned(v.linear) * scale, v.angular * scale);
+    }
+}
+
+fn potential<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
+    nodes
+        .x
+        .iter()
+        .zip(nodes.y)
+        .zip(nodes.chi)
+        .map(move |((x, y), chi)| v.linear.re * *x + v.linear.im * *y + v.angular * *chi)
+}
+
+/// Normal velocity times ds of a rigid motion given in the boundary's frame.
+fn flux<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
+    let h = nodes.step;
+    nodes
+        .points()
+        .zip(nodes.tangents())
+        .map(move |(x, d)| h * (v.linear.im * d.re - v.linear.re * d.im + v.angular * dot(x, d)))
+}
+
+/// `out += scale · X v` on the links' nodes (v in link frames).
+pub(crate) fn add_interior_potential<R: Real>(model: &Model<'_, R>, v: &[R], scale: R, out: &mut [R]) {
+    for (_, b, nodes) in model.each_boundary() {
+        if let Some(link) = b.link {
+            for (o, x) in part_mut(out, b.first, b.nodes).iter_mut().zip(potential(&nodes, twist_of(v, link))) {
+                *o += scale * x;
+            }
+        }
+    }
+}
+
+/// `out = B v` on the links' nodes, 0 on walls.
+pub(crate) fn fill_flux<R: Real>(model: &Model<'_, R>, v: &[R], out: &mut [R]) {
+    for (_, b, nodes) in model.each_boundary() {
+        let out = part_mut(out, b.first, b.nodes);
+        match b.link {
+            Some(link) => {
+                for (o, f) in out.iter_mut().zip(flux(&nodes, twist_of(v, link))) {
+                    *o = f;
+                }
+            }
+            None => out.fill(R::zero()),
+        }
+    }
+}
+
+/// `out = Bᵀ f`: three reals per link, link frames.
+pub(crate) fn flux_moments<R: Real>(model: &Model<'_, R>, f: &[R], out: &mut [R]) {
+    for (_, b, nodes) in model.each_boundary() {
+        let Some(link) = b.link else { continue };
+        let (mut linear, mut angular) = (Complex::default(), R::zero());
+        for ((x, d), f) in nodes.points().zip(nodes.tangents()).zip(part(f, b.first, b.nodes)) {
+            linear += complex(-d.im, d.re) * *f;
+            angular += dot(x, d) * *f;
+        }
+        put_three(out, link, linear * nodes.step, angular * nodes.step);
+    }
+}
+
+/// `out += scale · Xᵀ f`: three reals per link, link frames.
+pub(crate) fn add_potential_moments<R: Real>(model: &Model<'_, R>, f: &[R], scale: R, out: &mut [R]) {
+    for (_, b, nodes) in model.each_boundary() {
+        let Some(link) = b.link else { continue };
+        let mut sum = [R::zero(); 3];
+        for (((f, x), y), chi) in part(f, b.first, b.nodes).iter().zip(nodes.x).zip(nodes.y).zip(nodes.chi) {
+            sum[0] += *f * *x;
+            sum[1] += *f * *y;
+            sum[2] += *f * *chi;
+        }
+        for (o, s) in part_mut(out, 3 * link, 3).iter_mut().zip(sum) {
+            *o += scale * s;
+        }
+    }
+}
+
+/// The boundary system of one configuration in the caller's buffers.
+pub(crate) struct BoundarySystem<'a, R> {
+    pub matrix: &'a mut [R],
+    pub ld: usize,
+    pub unknowns: usize,
+    pub pivots: &'a mut [R],
+    pub regular: &'a mut [R],
+}
+
+impl<R: Real> BoundarySystem<'_, R> {
+    /// Column `k` of the right-hand sides (before), of the densities (after [`BoundarySystem::solve`]).
+    pub(crate) fn column(&mut self, k: usize) -> &mut [R] {
+        part_mut(self.matrix, (self.unknowns + k) * self.ld, self.unknowns)
+    }
+
+    /// Assembles, sets the first right-hand sides to −2 X v for the link-frame motions in `motions` (columns of
+    /// three reals per link), factorizes and solves. O(N³).
+    pub(crate) fn solve(
+        &mut self,
+        model: &Model<'_, R>,
+        poses: Poses<'_, R>,
+        motions: &[R],
+        zx: &mut [R],
+        zy: &mut [R],
+    ) -> Result<()> {
+        assemble(model, poses, self.matrix, self.ld, self.regular, zx, zy);
+        let rows = 3 * model.links.len();
+        let columns = motions.chunks_exact(rows.max(1)).len();
+        for (k, v) in motions.chunks_exact(rows.max(1)).enumerate() {
+            let column = self.column(k);
+            column.fill(R::zero());
+            add_interior_potential(model, v, -R::TWO, column);
+        }
+        let used = (self.unknowns + columns) * self.ld;
+        factor(part_mut(self.matrix, 0, used), self.ld, self.unknowns, self.pivots)?;
+        let Some((lu, rest)) = self.matrix.split_at_mut_checked(self.unknowns * self.ld) else {
+            return Err(crate::status::Status::Internal.into());
+        };
+        let factors = Factors { lu, ld: self.ld, pivots: self.pivots };
+        for column in rest.chunks_exact_mut(self.ld.max(1)).take(columns) {
+            factors.back_substitute(part_mut(column, 0, self.unknowns));
+        }
+        Ok(())
+    }
+
+    /// The factors.
+    pub(crate) fn factors(&self) -> Factors<'_, R> {
+        Factors { lu: part(self.matrix, 0, self.unknowns * self.ld), ld: self.ld, pivots: self.pivots }
+    }
+
+    /// `out = Σ_k c_k u_k` over the solved columns.
+    pub(crate) fn combine(&mut self, coefficients: impl Iterator<Item = R>, out: &mut [R]) {
+        out.fill(R::zero());
+        for (k, c) in coefficients.enumerate() {
+            axpy(out, c, self.column(k));
+        }
+    }
+}

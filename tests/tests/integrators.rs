@@ -1,0 +1,99 @@
+//! Orders, tolerances and cost of the integrators on the paper's two ellipses.
+
+use nekton::Method;
+use nekton::scene::Scene;
+use nekton_tests::*;
+
+/// Positions of both ellipses at time `t`, and the number of evaluations.
+fn passage(nodes: usize, method: Method<f64>, t: f64) -> (Vec<f64>, u64) {
+    let links = paper_ellipse(nodes);
+    let bodies = two_ellipses(&links);
+    let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
+    let mut sim = sim.view();
+    sim.advance(t).unwrap();
+    let evaluations = sim.counters().evaluations;
+    (sim.positions().to_vec(), evaluations as u64)
+}
+
+/// Largest absolute difference.
+fn error(computed: &[f64], exact: &[f64]) -> f64 {
+    computed.iter().zip(exact).fold(0.0, |m: f64, (c, e)| m.max((c - e).abs()))
+}
+
+/// Observed orders when the step is halved twice. The discrete dynamics is smooth at any number of nodes.
+fn orders(method: impl Fn(f64) -> Method<f64>) -> Vec<f64> {
+    let (exact, _) = passage(32, adams(1e-13), 4.0);
+    let errors: Vec<f64> =
+        [0.1, 0.05, 0.025, 0.0125].iter().map(|&h| error(&passage(32, method(h), 4.0).0, &exact)).collect();
+    println!("errors {errors:?}");
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
+}
+
+#[test]
+fn rk4_has_order_4() {
+    let orders = orders(|step| Method::Rk4 { step });
+    println!("orders {orders:?}");
+    assert_near(orders[2], 4.0, 0.3);
+}
+
+#[test]
+fn abm4_has_order_4() {
+    let orders = orders(|step| Method::Abm4 { step });
+    println!("orders {orders:?}");
+    assert_near(orders[2], 4.0, 0.3);
+}
+
+#[test]
+fn error_of_adams_is_proportional_to_the_tolerance() {
+    let (exact, _) = passage(48, adams(1e-13), 5.0);
+    let mut last = f64::INFINITY;
+    for exponent in (4..=10).step_by(2) {
+        let tolerance = 10.0_f64.powi(-exponent);
+        let (q, evaluations) = passage(48, adams(tolerance), 5.0);
+        let error = error(&q, &exact);
+        println!("tolerance {tolerance:.0e}: error {error:.1e}, {evaluations} evaluations");
+        assert!(error <= 30.0 * tolerance, "tolerance {tolerance:e}: {error:e}");
+        // A hundredth of the tolerance gains at least a factor ten.
+        assert!(error <= 0.1 * last, "{error:e} after {last:e}");
+        last = error;
+    }
+}
+
+#[test]
+fn adams_passes_the_two_ellipses_to_4e_11_with_700_evaluations() {
+    let (exact, _) = passage(160, adams(3e-13), 10.0);
+    let mut best = Vec::new();
+    for tolerance in [1e-10, 3e-11, 1e-11] {
+        let (q, evaluations) = passage(160, adams(tolerance), 10.0);
+        best.push((tolerance, error(&q, &exact), evaluations));
+    }
+    println!("(tolerance, error, evaluations): {best:?}");
+    assert!(best.iter().any(|&(_, error, evaluations)| error <= 4e-11 && evaluations <= 700), "{best:?}");
+}
+
+#[test]
+fn advance_stops_exactly_and_dense_output_agrees_with_it() {
+    let links = paper_ellipse(48);
+    let bodies = two_ellipses(&links);
+    let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
+    for method in [adams(1e-9), Method::Rk4 { step: 0.03 }, Method::Abm4 { step: 0.03 }] {
+        let (mut stopped, mut dense) = (simulation(&scene, method), simulation(&scene, method));
+        let (mut stopped, mut dense) = (stopped.view(), dense.view());
+        for k in 1..=7 {
+            let t = 0.31 * f64::from(k);
+            stopped.advance(t).unwrap();
+            dense.advance_dense(t, 3.0).unwrap();
+            assert_eq!(stopped.time(), t);
+            assert_eq!(dense.time(), t);
+            let error = error(stopped.positions(), dense.positions());
+            assert!(error <= 1e-7, "{method:?} at {t}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn runs_repeat_bit_for_bit() {
+    for method in [adams(1e-7), Method::Rk4 { step: 0.1 }, Method::Abm4 { step: 0.1 }] {
+        assert_eq!(passage(32, method, 2.0), passage(32, method, 2.0));
+    }
+}

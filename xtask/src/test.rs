@@ -1,0 +1,84 @@
+//! `cargo xtask test`.
+
+use crate::steps::{Outcome, Steps, cargo, execute, output, require, root};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Targets without an operating system for which core is built when their `core` library is installed.
+const BARE_TARGETS: [&str; 4] =
+    ["thumbv7em-none-eabihf", "riscv32imafc-unknown-none-elf", "wasm32-unknown-unknown", "x86_64-unknown-none"];
+
+/// Runs everything that the project promises.
+pub fn run() -> ExitCode {
+    let mut steps = Steps::default();
+    steps.run("linker", || match require(&[("cc", "gcc")]) {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    });
+    steps.command("format", &mut cargo(&["fmt", "--all", "--check"]));
+    steps.command("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"]));
+    steps.command("core without std and heap", &mut cargo(&["build", "--package", "nekton", "--no-default-features"]));
+    steps.command(
+        "core without std",
+        &mut cargo(&["build", "--package", "nekton", "--no-default-features", "--features", "alloc"]),
+    );
+    steps.run("core for a bare target", bare);
+    steps.command("tests", &mut cargo(&["test", "--workspace", "--no-fail-fast"]));
+    steps.command(
+        "core tests with fft and faer",
+        &mut cargo(&["test", "--package", "nekton", "--features", "fft,faer", "--no-fail-fast"]),
+    );
+    steps.command(
+        "documentation",
+        cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
+    );
+    scenes(&mut steps);
+    steps.finish()
+}
+
+/// Builds core for every bare target that is installed.
+fn bare() -> Outcome {
+    let installed = |target: &&&str| {
+        let folder = output("rustc", &["--print", "target-libdir", "--target", target]);
+        folder.is_some_and(|folder| Path::new(&folder).is_dir())
+    };
+    let targets: Vec<&str> = BARE_TARGETS.iter().filter(installed).copied().collect();
+    if targets.is_empty() {
+        return Outcome::Skipped(format!("no such target installed; try: rustup target add {}", BARE_TARGETS[0]));
+    }
+    for target in targets {
+        let build =
+            ["build", "--package", "nekton", "--no-default-features", "--profile", "embedded", "--target", target];
+        let outcome = execute(&mut cargo(&build));
+        if !matches!(outcome, Outcome::Passed) {
+            return outcome;
+        }
+    }
+    Outcome::Passed
+}
+
+/// Runs every scene with the command, each as a step.
+fn scenes(steps: &mut Steps) {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(root().join("scenes"))
+        .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
+        .unwrap_or_default();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    if files.is_empty() {
+        steps.run("scenes", || Outcome::Failed("there is no scenes/*.toml".into()));
+    }
+    for file in files {
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let (scene, out) = (format!("scenes/{name}.toml"), format!("target/scenes/{name}"));
+        steps.run(&format!("scene {name}"), || {
+            // A result of an earlier run must not be taken for this one's.
+            let _ = std::fs::remove_dir_all(root().join(&out));
+            match execute(&mut cargo(&["run", "--release", "--quiet", "--", "run", &scene, "--out", &out])) {
+                Outcome::Passed if !root().join(&out).join("report.html").is_file() => {
+                    Outcome::Failed(format!("{out}/report.html was not written"))
+                }
+                outcome => outcome,
+            }
+        });
+    }
+}
