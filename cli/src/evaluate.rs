@@ -7,9 +7,9 @@ use nekton::status::Result as CoreResult;
 use serde_json::{Value, json};
 
 use crate::Ending;
-use crate::fake::Sim;
 use crate::scene_file::{Integrator, Problem};
 use crate::setup::Setup;
+use nekton::Sim;
 
 /// Prints everything, as a table or as one JSON object.
 pub fn evaluate(path: &Path, as_json: bool) -> Result<Ending, Problem> {

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place};
 
-use crate::fake::{Model, Sim};
 use crate::output::{Target, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
@@ -14,6 +13,7 @@ use crate::report;
 use crate::scene_file::{Integrator, Problem, RunDef};
 use crate::setup::Setup;
 use crate::{Ending, say};
+use nekton::{Model, Sim};
 
 /// Points with which an outline is drawn.
 const OUTLINE_POINTS: usize = 240;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use nekton::status::{Error, Place};
 
-use crate::fake::{Method, ModelBuf, SimBuf};
 use crate::scene_file::{Integrator, Problem, SceneFile};
+use nekton::{Method, ModelBuf, SimBuf};
 
 /// A scene with its model.
 pub struct Setup {
