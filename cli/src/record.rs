@@ -19,6 +19,8 @@ pub struct Record {
     pub terms: Terms,
     /// Smallest gap met, when and between what.
     pub smallest: Option<Nearest>,
+    /// Worst error indicators of space met: added mass, force.
+    pub resolution: [f64; 2],
     /// Why the run stopped before its end.
     pub stopped: Option<String>,
     /// Remarks on the scene.

@@ -30,7 +30,7 @@ pub fn run(path: &Path, folder: &Path) -> Result<Ending, Problem> {
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
-    figures(&mut view, &mut record);
+    figures(&view, &mut record);
     let time = clock.elapsed();
     record.stopped = stopped.as_ref().map(|(t, e)| format!("t = {t:.6} s: {}", setup.scene.describe(e)));
 
@@ -104,7 +104,7 @@ fn integrate(
 ) -> Result<Option<(f64, Error)>, Problem> {
     let bar = progress(run.duration);
     let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
-    keep(record, row);
+    keep(sim, record, row);
     let mut stopped = None;
     // The tolerance keeps a last row that would follow the one before by rounding only from being written.
     let rows = (run.duration / run.output_interval - 1e-9).ceil().max(1.0) as usize;
@@ -117,7 +117,7 @@ fn integrate(
         match step.and_then(|()| sample(setup, sim)) {
             Ok(row) => {
                 show(&bar, run.duration, &row.0);
-                keep(record, row);
+                keep(sim, record, row);
             }
             Err(e) => {
                 stopped = Some((sim.time(), e));
@@ -129,7 +129,7 @@ fn integrate(
         // The last good state may lie between two output times.
         let later = record.rows.last().is_some_and(|r| sim.time() > r.t);
         if let (true, Ok(row)) = (later, sample(setup, sim)) {
-            keep(record, row);
+            keep(sim, record, row);
         }
         bar.abandon();
     } else {
@@ -194,25 +194,28 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error>
     Ok((row, between))
 }
 
-fn keep(record: &mut Record, (row, between): (Row, String)) {
+/// Adds a row. The error in space is largest where boundaries come closest: it is looked at whenever they do.
+fn keep(sim: &mut Sim<'_, f64>, record: &mut Record, (row, between): (Row, String)) {
     let nearer = record.smallest.as_ref().is_none_or(|s| row.gap < s.distance);
-    if row.gap.is_finite() && nearer {
+    if nearer && row.gap.is_finite() {
         record.smallest = Some(Nearest { distance: row.gap, time: row.t, between });
+    }
+    if nearer && let Ok(r) = sim.resolution() {
+        record.resolution = [record.resolution[0].max(r.mass), record.resolution[1].max(r.force)];
     }
     record.rows.push(row);
 }
 
 /// Error indicators and counters at the end.
-fn figures(sim: &mut Sim<'_, f64>, record: &mut Record) {
+fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
     let mut add = |name: &str, value: String| record.figures.push((name.to_owned(), value));
     if let Some(s) = &record.smallest {
         let between = if s.between.is_empty() { String::new() } else { format!(", between {}", s.between) };
         add("smallest gap at an output time", format!("{:.4} m at t = {:.4} s{between}", s.distance, s.time));
     }
-    if let Ok(r) = sim.resolution() {
-        add("resolution of the added mass at the end", format!("{:.1e}", r.mass));
-        add("resolution of the force at the end", format!("{:.1e}", r.force));
-    }
+    let [mass, force] = record.resolution;
+    add("worst relative error in space of the added mass", format!("{mass:.1e}"));
+    add("worst relative error in space of the force", format!("{force:.1e}"));
     let c = sim.counters();
     add("steps (rejected)", format!("{} ({})", c.steps, c.rejected));
     add("evaluations", c.evaluations.to_string());

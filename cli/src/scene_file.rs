@@ -205,7 +205,13 @@ impl SceneFile {
             }
         };
         if !error.what.is_empty() {
-            text = format!("{text} ({} = {})", error.what, error.value);
+            let size = error.value.abs();
+            let value = if size == 0.0 || (1e-3..1e6).contains(&size) {
+                error.value.to_string()
+            } else {
+                format!("{:.3e}", error.value)
+            };
+            text = format!("{text} ({} = {value})", error.what);
         }
         text
     }
