@@ -242,7 +242,8 @@ fn draw(
             let closed = points.iter().chain(points.first()).copied();
             chart.draw_series([PathElement::new(closed.collect::<Vec<_>>(), colour.mix(0.8).stroke_width(THIN))])?;
         }
-        for s in series {
+        // Thick lines first: where a thin one coincides with them it still shows.
+        for s in series.iter().filter(|s| s.thick).chain(series.iter().filter(|s| !s.thick)) {
             let style = s.colour.stroke_width(if s.thick { THICK } else { LINE });
             let scaled: Vec<(f64, f64)> = s.points.iter().map(|p| (p.0, p.1 / unit)).collect();
             chart.draw_series([PathElement::new(scaled, style)])?;
