@@ -3,18 +3,22 @@
 //! With v the velocity, A u = −2 X v and Aᵀ λ = B v, the derivative of the discrete added mass along any motion of
 //! the boundaries is vᵀ dM_h v = λᵀ Im(dG) u: only the blocks between different boundaries contribute, through
 //! D = dW/dz. One pass over the pairs gives the rate a = Im(ż ∘ D u) along the actual motion, and
-//! g_a = q̇ᵀ (∂M/∂q_a) q̇. Then F = T₁ + J p − M J q̇ − g/2 with T₁ = Bᵀ A⁻¹ a, p = M q̇, (J v)_i = ω_i (−v_y, v_x, 0).
+//! g_a = q̇ᵀ (∂M/∂q_a) q̇. Then F = (T₁ + T₂)/2 + J p − M J q̇ − g/2 with T₁ = Bᵀ A⁻¹ a, T₂ = −2 Xᵀ A⁻ᵀ l,
+//! l = Im((λ ż)ᵀ D) from the same pass, p = M q̇, (J v)_i = ω_i (−v_y, v_x, 0). Either half alone delivers the discrete
+//! power; their mean is the derivative of the symmetrized M and so delivers the discrete impulse too.
 
 use crate::articulation::twist_of;
 use crate::boundary::Nodes;
 use crate::model::Model;
-use crate::nystrom::{Poses, induced_velocity, targets, transposed_velocity};
+use crate::nystrom::{Poses, TargetColumns, induced_velocity, induced_velocity_both, targets};
 use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
 use crate::se2::Twist;
 use crate::workspace::{copy, part, part_mut};
 
-/// Scratch of the pair passes: four vectors of length N.
+/// Scratch of the pair passes: six vectors of length N.
 pub(crate) struct PairScratch<'a, R> {
+    pub fx: &'a mut [R],
+    pub fy: &'a mut [R],
     pub zx: &'a mut [R],
     pub zy: &'a mut [R],
     pub hx: &'a mut [R],
@@ -128,8 +132,8 @@ pub(crate) fn add_three<R: Real>(model: &Model<'_, R>, boundary: usize, linear: 
     }
 }
 
-/// The pass: `rate = Im(ż ∘ D u)` and `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames, per unit
-/// density. O(N²).
+/// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
+/// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per pair of nodes.
 pub(crate) fn pair_pass<R: Real>(
     model: &Model<'_, R>,
     poses: Poses<'_, R>,
@@ -137,32 +141,11 @@ pub(crate) fn pair_pass<R: Real>(
     density: &[R],
     adjoint: &[R],
     s: &mut PairScratch<'_, R>,
-    rate: &mut [R],
-    gradient: &mut [R],
+    out: PassResult<'_, R>,
 ) {
-    rate.fill(R::zero());
-    gradient.fill(R::zero());
-    each_induced(model, poses, density, &[], s, |pair| {
-        let rates = relative_rates(&pair, model, poses, qd);
-        let h = pair.hx.iter().zip(pair.hy);
-        for ((a, zd), (hx, hy)) in part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(h) {
-            *a += zd.re * *hy + zd.im * *hx;
-        }
-        add_pose_gradient(&pair, model, poses, part(adjoint, pair.first, pair.len), R::one(), gradient);
-    });
-}
-
-/// The other half of the force's first term: `out = Dᵀ`-pass of the adjoint density, so that T₂ = −2 Xᵀ A⁻ᵀ out.
-/// Its difference from T₁ measures the resolution. O(N²).
-pub(crate) fn transposed_pass<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
-    qd: &[R],
-    adjoint: &[R],
-    s: &mut PairScratch<'_, R>,
-    out: &mut [R],
-) {
-    out.fill(R::zero());
+    out.rate.fill(R::zero());
+    out.transposed.fill(R::zero());
+    out.gradient.fill(R::zero());
     for (j, source, source_nodes) in model.each_boundary() {
         for (i, target, nodes) in model.each_boundary() {
             if i == j || (source.link.is_none() && target.link.is_none()) {
@@ -173,16 +156,42 @@ pub(crate) fn transposed_pass<R: Real>(
             for ((x, y), z) in zx.iter_mut().zip(zy.iter_mut()).zip(targets(&nodes, poses.get(i), poses.get(j))) {
                 (*x, *y) = (z.re, z.im);
             }
-            let (fx, fy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
-            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
-            let rates = relative_rates(&pair, model, poses, qd);
+            let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
+            hx.fill(R::zero());
+            hy.fill(R::zero());
+            let (fx, fy) = (part_mut(s.fx, 0, n), part_mut(s.fy, 0, n));
             let weights = part(adjoint, target.first, n);
-            for (((fx, fy), zd), w) in fx.iter_mut().zip(fy.iter_mut()).zip(rates).zip(weights) {
+            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
+            for (((fx, fy), zd), w) in
+                fx.iter_mut().zip(fy.iter_mut()).zip(relative_rates(&pair, model, poses, qd)).zip(weights)
+            {
                 (*fx, *fy) = (zd.re * *w, zd.im * *w);
             }
-            transposed_velocity(source, &source_nodes, fx, fy, zx, zy, part_mut(out, source.first, source.nodes));
+            let mut columns = TargetColumns { zx, zy, fx, fy, hx, hy };
+            let transposed = part_mut(out.transposed, source.first, source.nodes);
+            induced_velocity_both(
+                source,
+                &source_nodes,
+                part(density, source.first, source.nodes),
+                &mut columns,
+                transposed,
+            );
+            let pair = Induced { hx, hy, ..pair };
+            let rates = relative_rates(&pair, model, poses, qd);
+            let h = pair.hx.iter().zip(pair.hy);
+            for ((a, zd), (hx, hy)) in part_mut(out.rate, pair.first, pair.len).iter_mut().zip(rates).zip(h) {
+                *a += zd.re * *hy + zd.im * *hx;
+            }
+            add_pose_gradient(&pair, model, poses, weights, R::one(), out.gradient);
         }
     }
+}
+
+/// What [`pair_pass`] fills: two vectors of length N and three reals per link.
+pub(crate) struct PassResult<'a, R> {
+    pub rate: &'a mut [R],
+    pub transposed: &'a mut [R],
+    pub gradient: &'a mut [R],
 }
 
 /// Completes a force of per-unit-density quantities in world directions, in place:

@@ -2,7 +2,7 @@
 //! indicators. The first question after a step costs one evaluation; the following ones share it.
 
 use crate::articulation::{put_three, twist_of};
-use crate::christoffel::{PairScratch, transposed_pass};
+use crate::christoffel::{PairScratch, PassResult, pair_pass};
 pub use crate::contact::Gap;
 use crate::contact::smallest_gap;
 pub use crate::dynamics::Counters;
@@ -262,7 +262,7 @@ impl<R: Real> Sim<'_, R> {
         self.refresh()?;
         self.work.qdd.fill(R::zero());
         let model = self.model;
-        self.work.christoffel(&model);
+        self.work.force_of_accelerations(&model);
         copy(out, self.work.force);
         self.head.fresh = false;
         Ok(())
@@ -348,22 +348,19 @@ impl<R: Real> Sim<'_, R> {
             return Ok(Resolution { mass: zero, force: zero });
         }
         let largest = |x: &[R]| x.iter().fold(R::zero(), |m, x| m.max(x.abs()));
-        // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l.
+        // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l, both from one more pass.
         let w = &mut self.work;
         w.qdd.fill(zero);
-        w.christoffel(&model);
+        w.force_of_accelerations(&model);
         let scale = largest(w.force);
         w.solve_motion(&model);
-        w.pass(&model);
-        let poses = Poses(w.poses);
-        let mut pairs = PairScratch { zx: w.zx, zy: w.zy, hx: w.hx, hy: w.hy };
-        transposed_pass(&model, poses, w.qd, w.adjoint, &mut pairs, w.solution);
-        let factors = system!(w);
-        let factors = factors.factors();
-        factors.solve(w.rate);
-        factors.solve_transposed(w.solution);
+        let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
+        pair_pass(&model, Poses(w.poses), w.qd, w.density, w.adjoint, &mut scratch!(w), out);
+        let system = system!(w);
+        system.factors().solve(w.rate);
+        system.factors().solve_transposed(w.transposed);
         flux_moments(&model, w.rate, w.force);
-        add_potential_moments(&model, w.solution, R::TWO, w.force);
+        add_potential_moments(&model, w.transposed, R::TWO, w.force);
         let difference = largest(w.force) * model.head.fluid_density;
         let force = if scale > zero { difference / scale } else { zero };
         // Mass: M_h against its transpose, column by column.
@@ -385,11 +382,6 @@ impl<R: Real> Sim<'_, R> {
 }
 
 impl<R: Real> Work<'_, R> {
-    /// The Christoffel force alone into `force`; `qdd` must be 0.
-    fn christoffel(&mut self, model: &Model<'_, R>) {
-        self.force_of_accelerations(model);
-    }
-
     /// −G e_k into `force` for the motion of one coordinate alone.
     fn gyroscopic_column(&mut self, model: &Model<'_, R>, k: usize) {
         let poses = Poses(self.poses);

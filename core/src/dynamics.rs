@@ -10,7 +10,7 @@
 use crate::articulation::{
     accelerations, jacobian_column, place_links, project, put_three, set_coordinates, twist_of, velocities,
 };
-use crate::christoffel::{PairScratch, add_frame_terms, boundary_formula, pair_pass, without_turning};
+use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, pair_pass, without_turning};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::lu::{Factors, factor};
 use crate::model::{Control, Formulation, Model, ModelHead};
@@ -88,11 +88,15 @@ buffers! {
         density: d.unknowns,
         adjoint: d.unknowns,
         rate: d.unknowns,
+        transposed: d.unknowns,
         solution: d.unknowns,
+        second: d.unknowns,
         zx: d.unknowns,
         zy: d.unknowns,
         hx: d.unknowns,
         hy: d.unknowns,
+        fx: d.unknowns,
+        fy: d.unknowns,
         stream: d.circulating,
         normal: d.circulating,
         tangential: d.circulating,
@@ -130,7 +134,7 @@ macro_rules! flow {
 }
 macro_rules! scratch {
     ($w:expr) => {
-        PairScratch { zx: $w.zx, zy: $w.zy, hx: $w.hx, hy: $w.hy }
+        PairScratch { zx: $w.zx, zy: $w.zy, hx: $w.hx, hy: $w.hy, fx: $w.fx, fy: $w.fy }
     };
 }
 pub(crate) use {flow, scratch, system};
@@ -277,31 +281,30 @@ impl<R: Real> Work<'_, R> {
         to_world(model, poses, model.head.fluid_density, self.momentum);
     }
 
-    /// One pass over the pairs: rate and gradient of the motion (exact-gradient formula).
+    /// One pass over the pairs: both rates and the gradient of the motion (exact-gradient formula).
     pub(crate) fn pass(&mut self, model: &Model<'_, R>) {
         self.gradient.fill(R::zero());
         if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
             let poses = Poses(self.poses);
-            pair_pass(model, poses, self.qd, self.density, self.adjoint, &mut scratch!(self), self.rate, self.gradient);
+            let out = PassResult { rate: self.rate, transposed: self.transposed, gradient: self.gradient };
+            pair_pass(model, poses, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
             for g in self.gradient.iter_mut() {
                 *g *= model.head.fluid_density;
             }
         }
     }
 
-    /// `force = F + M^f w` for accelerations w in `drift` (links, world): the Christoffel force and the fluid's inertia.
-    ///
-    /// `halves`: both halves of the symmetrized added mass (a second, transposed solve); otherwise half of M_h w, to
-    /// which the caller adds the other half by the columns' momenta.
-    fn fluid_force(&mut self, model: &Model<'_, R>, w: Inertia, halves: bool) {
+    /// `force = F + M^f w` for accelerations w of the links: the Christoffel force and the fluid's inertia (symmetrized),
+    /// in world directions. One ordinary and one transposed solve.
+    fn fluid_force(&mut self, model: &Model<'_, R>, w: Inertia) {
         let links = model.links.len();
         let (poses, density) = (Poses(self.poses), model.head.fluid_density);
         self.force.fill(R::zero());
         if !model.head.plan.fluid {
             return;
         }
-        let exact =
-            model.head.force == ForceFormula::ExactGradient || model.head.plan.formulation == Formulation::Kirchhoff;
+        let lone = model.head.plan.formulation == Formulation::Kirchhoff;
+        let exact = model.head.force == ForceFormula::ExactGradient || lone;
         let base: &[R] = match w {
             Inertia::Drift => self.drift,
             Inertia::Accelerations => self.qdd,
@@ -311,13 +314,8 @@ impl<R: Real> Work<'_, R> {
         } else {
             copy(self.inertial, base);
         }
-        if model.head.plan.formulation == Formulation::Kirchhoff {
+        if lone {
             lone_momentum(model, poses, self.inertial, self.force);
-            if !halves {
-                for f in self.force.iter_mut() {
-                    *f *= R::HALF;
-                }
-            }
             add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
             return;
         }
@@ -325,35 +323,36 @@ impl<R: Real> Work<'_, R> {
             return;
         }
         to_link_frames(model, poses, self.inertial, self.spare);
-        let system = system!(self);
         if exact {
             copy(self.solution, self.rate);
         } else {
-            self.solution.fill(R::zero());
-        }
-        // A⁻¹ (a − X w) + ½ X w = T₁'s density + ½ (ψ of w)
-        add_interior_potential(model, self.spare, -R::one(), self.solution);
-        system.factors().solve(self.solution);
-        add_interior_potential(model, self.spare, R::HALF, self.solution);
-        flux_moments(model, self.solution, self.force);
-        if halves {
-            fill_flux(model, self.spare, self.solution);
-            add_potential_moments(model, self.solution, R::HALF, self.force);
-            system.factors().solve_transposed(self.solution);
-            add_potential_moments(model, self.solution, -R::one(), self.force);
-        }
-        if exact {
-            to_world(model, poses, density, self.force);
-            add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
-        } else {
-            // (2.15): Σ ψ_a kernel = Xᵀ (kernel − 2 A⁻ᵀ kernel), and the part that multiplies b_a.
+            // (2.15): the part that multiplies b_a now; Σ ψ_a kernel = Xᵀ (kernel − 2 A⁻ᵀ kernel), of which the second
+            // term rides on the solve below as l = 2 kernel.
             copy(self.solution, self.density);
             add_interior_potential(model, self.v, R::one(), self.solution);
-            boundary_formula(model, self.solution, self.v, self.rate, self.hx, self.force);
-            add_potential_moments(model, self.rate, R::one(), self.force);
-            system.factors().solve_transposed(self.rate);
-            add_potential_moments(model, self.rate, -R::TWO, self.force);
-            to_world(model, poses, density, self.force);
+            boundary_formula(model, self.solution, self.v, self.transposed, self.hx, self.force);
+            add_potential_moments(model, self.transposed, R::one(), self.force);
+            for l in self.transposed.iter_mut() {
+                *l *= R::TWO;
+            }
+            self.solution.fill(R::zero());
+        }
+        let system = system!(self);
+        // ½ T₂ + ½ M_hᵀ w = Xᵀ [½ B w − A⁻ᵀ (l + B w)]
+        fill_flux(model, self.spare, self.second);
+        add_potential_moments(model, self.second, R::HALF, self.force);
+        axpy(self.second, R::one(), self.transposed);
+        system.factors().solve_transposed(self.second);
+        add_potential_moments(model, self.second, -R::one(), self.force);
+        // ½ T₁ + ½ M_h w = ½ Bᵀ [A⁻¹ (a − 2 X w) + X w]
+        add_interior_potential(model, self.spare, -R::TWO, self.solution);
+        system.factors().solve(self.solution);
+        add_interior_potential(model, self.spare, R::one(), self.solution);
+        flux_moments(model, self.solution, self.inertial);
+        axpy(self.force, R::HALF, self.inertial);
+        to_world(model, poses, density, self.force);
+        if exact {
+            add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
         }
     }
 
@@ -441,16 +440,15 @@ impl<R: Real> Work<'_, R> {
 
     /// Accelerations, once velocities are known.
     pub(crate) fn accelerate(&mut self, model: &Model<'_, R>, t: R) -> Result<()> {
-        let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+        let n = model.head.plan.free_coordinates;
         self.solve_motion(model);
         self.pass(model);
         // a + N_u ü
-        for (dds, c) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
-            let _ = c;
+        for (dds, _) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
             *dds = R::zero();
         }
         accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.drift);
-        self.fluid_force(model, Inertia::Drift, false);
+        self.fluid_force(model, Inertia::Drift);
         self.add_outer_forces(model);
         add_body_inertia(model, self.drift, self.force);
         project(model, self.s, self.q, self.force, self.generalized);
@@ -458,8 +456,7 @@ impl<R: Real> Work<'_, R> {
         for (c, g) in
             model.coordinates.iter().zip(self.generalized.iter()).filter(|(c, _)| c.control != Control::Prescribed)
         {
-            let half = inner(part(self.momenta, c.free * rows, rows), self.inertial_of(model)) * R::HALF;
-            put(self.reduced, rhs_at + c.free, -*g - half);
+            put(self.reduced, rhs_at + c.free, -*g);
         }
         self.add_torques(model, t);
         self.solve_reduced(n);
@@ -470,11 +467,6 @@ impl<R: Real> Work<'_, R> {
         self.check()
     }
 
-    /// The accelerations that the fluid's inertia of the last `fluid_force` was made for; none without fluid.
-    fn inertial_of(&self, model: &Model<'_, R>) -> &[R] {
-        if model.head.plan.fluid { self.inertial } else { &[] }
-    }
-
     fn check(&self) -> Result<()> {
         let all = self.qd.iter().chain(self.dds.iter());
         if all.clone().all(|x| x.is_finite()) { Ok(()) } else { Err(Status::NonFiniteState.into()) }
@@ -482,7 +474,7 @@ impl<R: Real> Work<'_, R> {
 
     /// The forces that drive every coordinate, ν = (∂F/∂s)ᵀ [M q̈ + f], into `generalized`. After [`Work::accelerate`].
     pub(crate) fn drive_forces(&mut self, model: &Model<'_, R>) {
-        self.fluid_force(model, Inertia::Accelerations, true);
+        self.fluid_force(model, Inertia::Accelerations);
         self.add_outer_forces(model);
         add_body_inertia(model, self.qdd, self.force);
         project(model, self.s, self.q, self.force, self.generalized);
@@ -492,7 +484,7 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn force_of_accelerations(&mut self, model: &Model<'_, R>) {
         self.solve_motion(model);
         self.pass(model);
-        self.fluid_force(model, Inertia::Accelerations, true);
+        self.fluid_force(model, Inertia::Accelerations);
     }
 
     /// Power of all drives: Σ ν ṡ over prescribed and torque-driven coordinates.

@@ -67,10 +67,8 @@ impl<R: Real> SimBuf<R> {
     }
 
     /// The simulation's view, through which everything is done. O(1).
-    ///
-    /// # Errors
-    /// None in practice: the memory was made for this model.
-    pub fn view(&mut self) -> Result<Sim<'_, R>> {
-        Sim::view(self.model.view(), &mut self.head, &mut self.reals)
+    #[allow(clippy::expect_used)] // the memory was sized for this model when it was made
+    pub fn view(&mut self) -> Sim<'_, R> {
+        Sim::view(self.model.view(), &mut self.head, &mut self.reals).expect("memory of the required length")
     }
 }

@@ -144,7 +144,7 @@ fn swimmer_in_vacuum_keeps_its_centre_of_mass_and_angular_momentum() {
         let mut sim = simulation(&Scene { shortcuts, bodies: &bodies, ..Scene::new(0.0, 0.0) }, adams(1e-12));
         let mut sim = sim.view();
         let masses: Vec<(f64, f64)> =
-            (0..3).map(|i| sim.model().link(i)).map(|link| (link.mass, link.inertia)).collect();
+            (0..3).map(|i| sim.model().link(i).unwrap()).map(|link| (link.mass, link.inertia)).collect();
         let moments = |sim: &Sim<'_, f64>| {
             let (mut centre, mut momentum, mut angular, mut total) = ([0.0; 2], [0.0; 2], 0.0, 0.0);
             for ((m, i), (q, v)) in masses.iter().zip(sim.positions().chunks(3).zip(sim.velocities().chunks(3))) {
