@@ -16,7 +16,7 @@ pub fn evaluate(path: &Path, as_json: bool) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
     // The method does not matter: no step is made.
     let mut sim = setup.simulate(Integrator::Rk4 { step: 1.0 })?;
-    let values = sim.view().and_then(|mut view| Values::new(&setup, &mut view)).map_err(|e| setup.problem(&e))?;
+    let values = Values::new(&setup, &mut sim.view()).map_err(|e| setup.problem(&e))?;
     crate::say(&if as_json { values.json(&setup).to_string() } else { values.table(&setup) });
     Ok(Ending::Complete)
 }

@@ -26,7 +26,7 @@ pub fn run(path: &Path, folder: &Path) -> Result<Ending, Problem> {
     let plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
     let mut sim = setup.simulate(plan.integrator)?;
-    let mut view = sim.view().map_err(|e| setup.problem(&e))?;
+    let mut view = sim.view();
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;

@@ -204,7 +204,9 @@ impl SceneFile {
                 format!("{} and {}: {}", self.name_of(place), self.name_of(other), error.status.text())
             }
         };
-        if !error.what.is_empty() {
+        // The gap of boundaries that touch is rounding only.
+        let touching = matches!(error.status, Status::Overlap | Status::Contact);
+        if !error.what.is_empty() && !touching {
             let size = error.value.abs();
             let value = if size == 0.0 || (1e-3..1e6).contains(&size) {
                 error.value.to_string()
@@ -241,7 +243,12 @@ impl SceneFile {
         };
         let line = match error.status {
             Status::Overlap | Status::OutsideTank | Status::Contact => self.line_of_position(error.place),
-            _ => lines.find(&[error.what]).or_else(|| lines.find(keys)).unwrap_or(lines.own),
+            _ => match (lines.find(&[error.what]).or_else(|| lines.find(keys)), error.place) {
+                (Some(line), _) => line,
+                // No line stands for the whole scene.
+                (None, Place::Scene) => return Problem::file(self.path(), self.describe(error)),
+                (None, _) => lines.own,
+            },
         };
         let hint = match error.status {
             Status::Overlap | Status::Contact => {
@@ -250,6 +257,8 @@ impl SceneFile {
             }
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
             Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
+            Status::NodeCount => Some("there are more than the core takes".to_owned()),
+            Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
             _ => None,

@@ -182,6 +182,25 @@ fn values_out_of_range() {
 }
 
 #[test]
+fn bodies_without_any_inertia() {
+    let empty = changed("density = 1.0", "density = 0.0").replace("density = 2.0", "density = 0.0");
+    refuses(
+        &empty,
+        "scene.toml:28: link `stone.stone`: a body without mass cannot be accelerated in a fluid without density \
+         (give it a density, or give the fluid one)",
+    );
+}
+
+#[test]
+fn tolerance_below_rounding() {
+    refuses(
+        &changed("1e-6", "1e-17"),
+        "scene.toml:34: a tolerance must be positive and not below rounding (relative = 1.000e-17) \
+         (1e-12 is near the least that can be met)",
+    );
+}
+
+#[test]
 fn overlapping_bodies() {
     let place = Place::new(&changed("[0.0, 3.0]", "[0.0, 0.7]"));
     let done = place.run();

@@ -196,6 +196,96 @@ fn a_run_that_ends_in_contact_keeps_its_results_and_says_why() {
     assert!(report.contains("The run stopped early: t = ") && !report.contains("reached its end"));
 }
 
+/// Trajectory of GOOD with one passage replaced.
+fn trajectory(from: &str, to: &str) -> Vec<Vec<f64>> {
+    let place = Place::new(&changed(from, to));
+    let done = place.run();
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    rows(&place.read("results/trajectory.csv"))
+}
+
+const STROKE: &str = "{ harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }";
+const HINGE: &str = "hinge = { parent = [-1.2, 0.0], self = [1.0, 0.0] }";
+
+#[test]
+fn a_prescribed_root_follows_its_signals() {
+    let root = "root = { x = { harmonic = [{ amplitude = 0.1, frequency = 3.0 }] }, theta = 0.2 }";
+    for r in trajectory("velocity = [0.1, 0.0]", root) {
+        assert!((r[1] - 0.1 * (3.0 * r[0]).sin()).abs() < 1e-14);
+        assert!(r[2] == 0.0 && (r[3] - 0.2).abs() < 1e-15);
+        assert!((r[4] - 0.3 * (3.0 * r[0]).cos()).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn a_slider_moves_along_its_axis() {
+    let slider = "slider = { parent = [-1.2, 0.0], self = [1.0, 0.0], axis = [-2.0, 0.0], angle = 0.3 }";
+    for r in trajectory(HINGE, slider) {
+        let u = 0.3 * (2.0 * r[0]).sin();
+        let (s, c) = r[3].sin_cos();
+        let (st, ct) = r[9].sin_cos();
+        assert!((r[9] - r[3] - 0.3).abs() < 1e-14);
+        assert!((r[7] + ct - (r[1] - (1.2 + u) * c)).abs() < 1e-13);
+        assert!((r[8] + st - (r[2] - (1.2 + u) * s)).abs() < 1e-13);
+    }
+}
+
+#[test]
+fn a_locked_joint_stays_where_it_is() {
+    for r in trajectory(STROKE, "{ locked = 0.25 }") {
+        assert!((r[9] - r[3] - 0.25).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn a_torque_driven_joint_starts_where_told() {
+    let rows = trajectory(STROKE, "{ torque = 0.01, stiffness = 0.1, damping = 0.1, rest = 0.1, start = [0.2, -0.1] }");
+    assert!((rows[0][9] - rows[0][3] - 0.2).abs() < 1e-15);
+    assert!((rows[0][12] - rows[0][6] + 0.1).abs() < 1e-15);
+    assert!((rows[5][9] - rows[5][3] - 0.2).abs() > 1e-3);
+}
+
+#[test]
+fn integrators_agree() {
+    let adams = "{ method = \"adams\", tolerance = 1e-6 }";
+    let usual = trajectory(adams, "{ method = \"adams\", tolerance = 1e-10 }");
+    for other in ["rk4", "abm4"] {
+        let rows = trajectory(adams, &format!("{{ method = \"{other}\", step = 0.01 }}"));
+        for (a, b) in rows.iter().flatten().zip(usual.iter().flatten()) {
+            assert!((a - b).abs() < 1e-6, "{other}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn repeated_runs_write_the_same_bytes() {
+    let (a, b) = (finished(), finished());
+    for name in names(&a.path("results")) {
+        assert!(a.read(&format!("results/{name}")) == b.read(&format!("results/{name}")), "{name}");
+    }
+}
+
+/// Reference positions of this scene, converged to the digits given.
+#[test]
+fn two_ellipses_arrive_where_they_should() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let place = Place::new("");
+    let out = place.path("results");
+    let done = nekton(&folder, &["run", "two_ellipses.toml", "--out", out.to_str().unwrap()]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let rows = rows(&place.read("results/trajectory.csv"));
+    for (t, expected) in [
+        (4.0, [-0.0631558367301, -1.1605272570319, 0.1087586354437]),
+        (8.0, [-1.95119755853, -1.19464491956, 0.69460723836]),
+        (16.0, [-4.4566299139, -0.0703918602, 2.6164405953]),
+    ] {
+        let row = rows.iter().find(|r| (r[0] - t).abs() < 1e-9).unwrap();
+        for (a, b) in row[1..4].iter().zip(expected) {
+            assert!((a - b).abs() < 1e-9, "t = {t}: {a} instead of {b}");
+        }
+    }
+}
+
 #[test]
 fn evaluate_prints_every_documented_key() {
     let place = Place::new(GOOD);
