@@ -141,18 +141,17 @@ fn integrate(
 /// On standard error, and only if that is a terminal.
 fn progress(duration: f64) -> ProgressBar {
     let bar = ProgressBar::new(PROGRESS);
-    let template = format!("{{bar:30}} {{msg}} of {duration:.4} s   {{elapsed}}, {{eta}} to go");
-    if let Ok(style) = ProgressStyle::with_template(&template) {
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}   {elapsed}, {eta} to go") {
         bar.set_style(style);
     }
-    bar.set_message("t = 0");
+    bar.set_message(format!("t = 0 of {duration} s"));
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
 
 fn show(bar: &ProgressBar, duration: f64, row: &Row) {
     let gap = if row.gap.is_finite() { format!(", gap {:.3} m", row.gap) } else { String::new() };
-    bar.set_message(format!("t = {:.4}{gap}", row.t));
+    bar.set_message(format!("t = {:.3} of {duration} s{gap}", row.t));
     bar.set_position((PROGRESS as f64 * row.t / duration) as u64);
 }
 
