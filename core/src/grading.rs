@@ -8,7 +8,7 @@
 //! an increasing function that is analytic in |Im t| < min b, so that the trapezoid rule in s keeps its spectral
 //! accuracy. Corners and bends bring permanent ladders; a ladder at a contact is one more entry of the list.
 
-use crate::scalar::{Complex, Real, cexp, cexpm1, cln_1p, complex, csin_cos};
+use crate::scalar::{Complex, Real, cabs, cexp, cexpm1, cln, cln_1p, complex, csin_cos};
 use crate::status::{Error, Result, Status};
 use crate::workspace::{at, part, put};
 
@@ -142,7 +142,7 @@ impl<'a, R: Real> Grading<'a, R> {
 
     /// s, s′, s″ at a real parameter. Cost: one sine and one arc tangent per rung.
     pub fn jet(&self, t: R) -> [R; 3] {
-        let mut sum = [self.plain * t - self.origin, self.plain, R::zero()];
+        let mut sum = [self.plain * t, self.plain, R::zero()];
         for [place, _, weight, decay, sh, half_sinh] in self.each() {
             let v = t - place;
             let (s, c) = (v * R::HALF).sin_cos();
@@ -152,6 +152,7 @@ impl<'a, R: Real> Grading<'a, R> {
             sum[1] += slope;
             sum[2] -= slope * s * c / m;
         }
+        sum[0] -= self.origin;
         sum
     }
 
@@ -174,7 +175,11 @@ impl<'a, R: Real> Grading<'a, R> {
             // ln of (1 − e^(−b ± i(v + u))) / (1 − e^(−b ± iv))
             let z = complex(-b, t - place);
             let ratio = cexp(z) / cexpm1(z);
-            let turn = cln_1p(ratio * forth) - cln_1p(ratio.conj() * back);
+            let log = |small: Complex<R>, from: Complex<R>, by: Complex<R>| {
+                let far = cabs(small) > R::HALF;
+                if far { cln(cexpm1(from + by) / cexpm1(from)) } else { cln_1p(small) }
+            };
+            let turn = log(ratio * forth, z, iu) - log(ratio.conj() * back, z.conj(), -iu);
             sum += (u + complex(-turn.im, turn.re)) * weight;
         }
         sum
@@ -209,7 +214,7 @@ impl<'a, R: Real> Grading<'a, R> {
             let slow = f.abs() > last * R::HALF;
             last = f.abs();
             let next = if newton > low && newton < high && !slow { newton } else { middle };
-            if next == t || !(low < high) {
+            if next == t || low >= high {
                 break;
             }
             t = next;
@@ -229,5 +234,134 @@ impl<'a, R: Real> Grading<'a, R> {
         }
         let s = R::TAU * R::count(k) / R::count(n);
         if k == 0 || self.rungs.is_empty() { Ok(s) } else { self.inverse(s, s) }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::indexing_slicing)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::scalar::{cabs, cis};
+    use std::vec;
+    use std::vec::Vec;
+
+    fn ladder(t: f64, beta: f64) -> Ladder<f64> {
+        Ladder { t, beta, top: TOP }
+    }
+
+    fn store(ladders: &[Ladder<f64>]) -> (Vec<f64>, usize) {
+        let rungs = ladders.iter().map(|l| l.count()).sum();
+        let mut store = vec![f64::NAN; grading_len(rungs).unwrap()];
+        assert_eq!(write_grading(ladders.iter().copied(), &mut store).unwrap(), rungs);
+        (store, rungs)
+    }
+
+    const CASES: [&[Ladder<f64>]; 4] = [
+        &[],
+        &[Ladder { t: 0.0, beta: 1e-9, top: TOP }],
+        &[Ladder { t: 1.0, beta: 0.1, top: TOP }, Ladder { t: 4.0, beta: 1e-4, top: 0.5 }],
+        &[Ladder { t: 6.2, beta: 1e-3, top: TOP }, Ladder { t: 0.001, beta: 2e-3, top: TOP }],
+    ];
+
+    #[test]
+    fn map_gains_one_turn_per_turn_and_increases() {
+        for ladders in CASES {
+            let (data, rungs) = store(ladders);
+            let grading = Grading::read(&data, rungs);
+            assert_eq!(grading.jet(0.0)[0], 0.0);
+            let mut last = -1.0;
+            for k in 0..=1000 {
+                let [s, slope, _] = grading.jet(f64::TAU * k as f64 / 1000.0);
+                assert!(s > last && slope > 0.0);
+                last = s;
+            }
+            assert!((last - f64::TAU).abs() < 1e-14 + 1e-15 * grading.jet(f64::TAU)[1], "{last}");
+        }
+    }
+
+    #[test]
+    fn derivatives_match_cauchys_formula_and_the_complex_slope() {
+        for ladders in CASES {
+            let (data, rungs) = store(ladders);
+            let grading = Grading::read(&data, rungs);
+            for k in 0..200 {
+                let t = grading.node(k, 200).unwrap();
+                let [_, slope, bend] = grading.jet(t);
+                let radius = 0.02 / slope.max(1.0);
+                let (mut first, mut second, n) = (Complex::default(), Complex::default(), 32);
+                for j in 0..n {
+                    let z = cis(f64::TAU * (j as f64 + 0.5) / n as f64);
+                    first += grading.difference(t, z * radius) / (z * radius * n as f64);
+                    second += grading.slope(z * radius + t) / (z * radius * n as f64);
+                }
+                let rounding = 1e-13 + 4e-15 / radius;
+                assert!(cabs(first - slope) <= rounding * slope, "{t} {first} {slope}");
+                assert!(cabs(second - bend) <= rounding * (bend.abs() + slope / radius), "{t} {second} {bend}");
+                assert!(cabs(grading.slope(complex(t, 0.0)) - slope) <= 1e-13 * slope);
+            }
+        }
+    }
+
+    #[test]
+    fn difference_is_that_of_the_map_at_large_offsets_and_relative_at_small_ones() {
+        for ladders in CASES {
+            let (data, rungs) = store(ladders);
+            let grading = Grading::read(&data, rungs);
+            for (i, j) in (0..60).flat_map(|i| (0..60).map(move |j| (i, j))) {
+                let (a, b) = (grading.node(i, 60).unwrap(), grading.node(j, 60).unwrap());
+                let steep = grading.jet(a)[1] + grading.jet(b)[1];
+                let direct = f64::TAU * (j as f64 - i as f64) / 60.0;
+                let got = grading.difference(a, complex(b - a, 0.0));
+                assert!(cabs(got - direct) < 1e-13 + 2e-15 * steep, "{i} {j} {got} {direct}");
+                let u = cis(j as f64) * (1e-9 / grading.jet(a)[1]);
+                assert!(cabs(grading.difference(a, u) / u / grading.jet(a)[1] - 1.0) < 1e-8);
+            }
+        }
+    }
+
+    #[test]
+    fn ladders_that_coincide_share_their_weight() {
+        let (one, rungs) = store(&[ladder(2.0, 0.01)]);
+        let (two, _) = store(&[ladder(2.0, 0.01), ladder(2.0, 0.01)]);
+        let (a, b) = (Grading::read(&one, rungs), Grading::read(&two, 2 * rungs));
+        // Two requests weigh more than one, but far less than twice as much.
+        let (single, double) = (a.jet(2.0)[1], b.jet(2.0)[1]);
+        assert!(double > 0.9 * single && double < 1.25 * single, "{single} {double}");
+    }
+
+    #[test]
+    fn order_of_ladders_does_not_matter() {
+        let list = [ladder(0.3, 0.02), ladder(0.35, 0.01), ladder(3.0, 1e-4)];
+        let mut other = list;
+        other.reverse();
+        let ((a, n), (b, _)) = (store(&list), store(&other));
+        for k in 0..50 {
+            let t = k as f64 / 8.0;
+            assert!((Grading::read(&a, n).jet(t)[0] - Grading::read(&b, n).jet(t)[0]).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn map_is_continuous_where_a_rung_enters() {
+        for beta in [TOP, TOP / 3.0, TOP / 27.0] {
+            let values: Vec<_> = [1.0 - 1e-9, 1.0 + 1e-9]
+                .iter()
+                .map(|f| {
+                    let (data, n) = store(&[ladder(1.0, beta * f), ladder(1.5, 0.2)]);
+                    Grading::read(&data, n).jet(1.3)[0]
+                })
+                .collect();
+            assert!((values[0] - values[1]).abs() < 1e-7, "{beta} {values:?}");
+        }
+    }
+
+    #[test]
+    fn too_little_memory_is_refused() {
+        let mut short = [0.0; 7];
+        assert_eq!(
+            write_grading([ladder(0.0, 0.1)].into_iter(), &mut short).unwrap_err().status,
+            Status::MemoryTooSmall
+        );
     }
 }

@@ -50,7 +50,7 @@ fn length<R: Real>(what: &'static str, value: R) -> Result<()> {
     let smallest = R::TINY.sqrt().sqrt() * R::lit(16.0);
     match value {
         v if !v.is_finite() => error(Status::NotFinite),
-        v if !(v > R::zero()) => error(Status::BadShape),
+        v if v <= R::zero() => error(Status::BadShape),
         v if v < smallest || v * smallest > R::lit(0.1) => error(Status::OutOfRange),
         _ => Ok(()),
     }
@@ -89,7 +89,7 @@ impl<R: Real> Shape<'_, R> {
         };
         match *self {
             Shape::Ellipse { .. } => Ok(Sizes { own: 0, rungs: 0, scratch: 0 }),
-            Shape::Star { lobes, .. } => Ok(Sizes { own: 6, rungs: star_rungs(lobes), scratch: 0 }),
+            Shape::Star { .. } => Ok(Sizes { own: 6, rungs: 0, scratch: 0 }),
             Shape::Rectangle { width, height, radius } => polygon(&rectangle(width, height), radius),
             Shape::Polygon { vertices, radius } => polygon(vertices, radius),
             Shape::Curve { points } => Ok(Sizes {
@@ -108,7 +108,8 @@ impl<R: Real> Shape<'_, R> {
         graded.filter(|n| *n < usize::MAX / 64).ok_or(Status::SizeOverflow.into())
     }
 
-    /// Reals needed while compiling. Depends on the shape only. Errors as for [`store_len`](Self::store_len).
+    /// Reals needed while compiling: about n² + 100 n for a curve through n points, 130 per corner, else none.
+    /// Depends on the shape only. Errors as for [`store_len`](Self::store_len).
     pub fn scratch_len(&self) -> Result<usize> {
         let scratch = self.sizes()?.scratch;
         if scratch < usize::MAX / 64 { Ok(scratch) } else { Err(Status::SizeOverflow.into()) }
@@ -116,6 +117,8 @@ impl<R: Real> Shape<'_, R> {
 
     /// Validates the shape and writes its curve and grading into `store`.
     ///
+    /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
+    /// of the shortest side; from 32 roundings of the perimeter up to where two arcs no longer fit on a side.
     /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`.
     /// Errors name the measure, corner ("vertex") or point: `NotFinite`, `BadShape`, `OutOfRange`,
     /// `SelfIntersection`; `MemoryTooSmall`.
@@ -136,7 +139,7 @@ impl<R: Real> Shape<'_, R> {
                     put(store, 2 * k + 1, R::zero());
                 }
                 let kind = Kind::Fourier { centre: R::one(), stride: R::count(lobes), down: 1, count: 3 };
-                Ok((grade_bends(kind, lobes.max(8) * 64, sizes.rungs, &mut [], store)?, Status::Ok))
+                Ok((Outline { kind, rungs: 0 }, Status::Ok))
             }
             Shape::Rectangle { width, height, radius } => {
                 let perimeter = polygon::write_rectangle(width, height, radius, store)?;
@@ -168,7 +171,7 @@ impl<R: Real> Shape<'_, R> {
                     return Err(Status::Internal.into());
                 };
                 let size = curve.modes().fold(R::zero(), |s, (k, c)| if k == R::zero() { s } else { s + dot(c, c) });
-                if !(enclosed > size * R::EPSILON * R::lit(64.0)) {
+                if enclosed <= size * R::EPSILON * R::lit(64.0) || enclosed.is_nan() {
                     return Err(Error::new(Status::BadShape).of("area", enclosed.to_f64()));
                 }
                 Ok((outline, if clockwise { Status::OutlineReversed } else { Status::Ok }))
@@ -185,7 +188,7 @@ impl<R: Real> Shape<'_, R> {
                 let error = |status: Status| Err(Error::new(status).of("amplitude", amplitude.to_f64()));
                 if !amplitude.is_finite() {
                     error(Status::NotFinite)
-                } else if !(amplitude.abs() < R::one()) {
+                } else if amplitude.abs() >= R::one() {
                     error(Status::OutOfRange)
                 } else if lobes > MAX_LOBES {
                     Err(Error::new(Status::OutOfRange).of("lobes", lobes as f64))
@@ -221,11 +224,6 @@ impl<R: Real> Shape<'_, R> {
     }
 }
 
-/// Rungs of a star, at most: a ladder at every tip and every trough.
-fn star_rungs(lobes: usize) -> usize {
-    lobes.min(MAX_LOBES) * 2 * BEND_RUNGS
-}
-
 fn radius_given<R: Real>(radius: Option<R>) -> Result<()> {
     match radius {
         Some(r) if !r.is_finite() => Err(Error::new(Status::NotFinite).of("radius", r.to_f64())),
@@ -249,7 +247,10 @@ fn points_given<R: Real>(all: &'static str, one: &'static str, points: &[[R; 2]]
     length(one, size).map_err(|e| if size > R::zero() { e.of(one, far as f64) } else { e.of(one, 1.0) })
 }
 
-/// Grades a Fourier outline at its bends; leaves the samples in `positions` if there is room.
+/// Grades a curve through points at its bends, convex and concave; leaves its samples in `positions`.
+///
+/// Stars are not graded: among ten bends or so the ladders compete, and the polar angle already resolves them
+/// (0.3, 5 lobes alone, 48 nodes: added mass to 1e-6 as against 1e-3).
 fn grade_bends<R: Real>(
     kind: Kind<R>,
     samples: usize,

@@ -3,10 +3,12 @@
 //! Every curve runs counter-clockwise in a 2π-periodic parameter t, is analytic in t, and can be evaluated at complex t.
 //! Lengths are those of the shape's own drawing frame.
 //!
-//! Ellipses and rectangles have exactly the measures given. A polygon with corner radius R measures less than its
-//! vertices span by about 0.8 R e^(−1.3 L/R) at a side of length L with right angles: 3 % of L at the largest radius
-//! L/2, 10⁻⁶ L at L/10, nothing to rounding from L/28 on.
+//! Ellipses, stars and rectangles have exactly the measures given. A side of a polygon, of length L between right angles
+//! of corner radius R, lies inside the line through its vertices by 0.76 R ln(1 + e^(−1.31 L/R)) at its middle: 3 % of L
+//! at the largest radius L/2, 2·10⁻⁷ L at L/10, nothing to rounding from L/28 on.
 
+#[cfg(test)]
+mod added_mass_test;
 mod compile;
 mod ellipse;
 mod fourier;
@@ -197,24 +199,26 @@ impl<R: Real> OutlineView<'_, R> {
                 fourier.modes().fold(R::zero(), |top, (k, _)| top.max(k.abs())).to_f64() as usize
             }
         };
-        let n = (self.grading.rungs() * 32).max(modes * 16).max(2048);
+        let n = (self.grading.rungs() * 8).max(modes * 16).max(2048);
         let step = R::TAU / R::count(n);
         let origin = (self.curve.jet_real(R::zero())[0] + self.curve.jet_real(R::PI)[0]) * R::HALF;
-        let (mut area, mut first, mut perimeter) = (R::zero(), Complex::<R>::default(), R::zero());
+        let (mut area, mut first, mut polar, mut perimeter) =
+            (R::zero(), Complex::<R>::default(), R::zero(), R::zero());
         self.walk(n, |node| {
             let z = node.x - origin;
             let flux = cross(z, node.dx);
             area += flux;
             first += z * flux;
+            polar += dot(z, z) * flux;
             perimeter += cabs(node.dx);
         })?;
         // ∇·x = 2, ∇·(x₁x) = 3x₁, ∇·(|x|²x) = 4|x|²
         let shift = first / complex(area, R::zero()) * R::lit(2.0 / 3.0);
         let centroid = origin + shift;
-        let (mut polar, mut reach, mut farthest) = (R::zero(), R::zero(), R::zero());
-        self.walk(n, |node| {
+        let (area, polar) = (area * step * R::HALF, polar * step / R::lit(4.0));
+        let (mut reach, mut farthest) = (R::zero(), R::zero());
+        self.walk(n / 4, |node| {
             let z = node.x - centroid;
-            polar += dot(z, z) * cross(z, node.dx);
             if cabs(z) > reach {
                 (reach, farthest) = (cabs(z), node.t);
             }
@@ -229,9 +233,9 @@ impl<R: Real> OutlineView<'_, R> {
             }
         }
         Ok(AreaProperties {
-            area: area * step * R::HALF,
+            area,
             centroid,
-            polar_moment: polar * step / R::lit(4.0),
+            polar_moment: polar - area * dot(shift, shift),
             perimeter: perimeter * step,
             reach,
         })

@@ -1,3 +1,4 @@
+#![allow(clippy::indexing_slicing)]
 extern crate std;
 use super::*;
 use crate::scalar::cis;
@@ -119,7 +120,7 @@ fn delta_matches_subtraction_at_large_offsets_and_the_tangent_at_small_ones() {
         for k in 0..61 {
             let t = view.node(k, 61).unwrap().t;
             let [x, d, dd] = view.curve.jet_real(t);
-            for u in [-6.0, -3.2, -1.0, -0.1, -1e-3, 1e-3, 0.02, 0.7, 3.14, 5.0, 7.0] {
+            for u in [-6.0, -3.2, -1.0, -0.1, -1e-3, 1e-3, 0.02, 0.7, 3.1, 5.0, 7.0] {
                 let direct = view.curve.jet_real(t + u)[0] - x;
                 close(cabs(view.curve.delta(t, complex(u, 0.0)) - direct), 0.0, 2e-14, &format!("{shape:?} {t} {u}"));
             }
@@ -225,15 +226,13 @@ fn rectangle_measures_what_was_asked_for() {
 }
 
 #[test]
-fn polygon_shrinks_as_documented() {
-    for (part, shrink) in [(0.5, 3e-2), (0.1, 1e-6), (1.0 / 28.0, 1e-15)] {
+fn sides_of_polygons_lie_inside_by_the_documented_depth() {
+    for part in [0.5, 0.2, 0.1, 1.0 / 28.0] {
         let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let c = compile(Shape::Polygon { vertices: &vertices, radius: Some(part) });
-        let lowest = c.view().curve.jet_real(f64::TAU / 8.0)[0].im;
-        assert!(
-            lowest >= 0.0 && lowest <= shrink && lowest >= shrink / 20.0 || part < 0.05 && lowest <= shrink,
-            "{part} {lowest:e}"
-        );
+        let depth = c.view().curve.jet_real(f64::TAU / 8.0)[0].im;
+        let expected = 0.76 * part * (-1.31 / part).exp().ln_1p();
+        close(depth, expected, 0.05 * expected + 1e-17, "depth");
     }
 }
 
@@ -451,4 +450,43 @@ fn single_precision_agrees_with_double() {
             close(cabs(d - m.dx), 0.0, 1e-4, &what);
         }
     }
+}
+#[test]
+fn arbitrary_outlines_are_compiled_or_refused_for_a_reason() {
+    fn judge<R: Real>(shape: Shape<'_, R>) -> bool {
+        match try_compile(shape) {
+            Ok(c) => {
+                let area = c.view().properties().unwrap_or_else(|e| panic!("{shape:?}: {e}")).area;
+                assert!(area > R::zero(), "{shape:?}");
+                (0..64).all(|k| c.view().node(k, 64).unwrap_or_else(|e| panic!("{shape:?}: {e}")).x.re.is_finite())
+            }
+            Err(e) => {
+                let reasons = [Status::SelfIntersection, Status::OutOfRange, Status::BadShape];
+                assert!(reasons.contains(&e.status) && !e.what.is_empty(), "{shape:?}: {e}");
+                false
+            }
+        }
+    }
+    let mut seed = 1u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 33) as f64 / (1u64 << 31) as f64
+    };
+    let mut accepted = 0;
+    for case in 0..60 {
+        let n = 3 + case % 6;
+        // Every third list of corners jumps about and mostly crosses itself.
+        let vertices: Vec<_> = (0..n)
+            .map(|k| {
+                let z = cis((k as f64 + 0.8 * random()) * f64::TAU / n as f64) * (0.05 + random());
+                if case % 3 == 0 && k % 2 == 0 { [-z.re, -z.im] } else { [z.re, z.im] }
+            })
+            .collect();
+        let narrow: Vec<_> = vertices.iter().map(|p| p.map(|x| x as f32)).collect();
+        let radius = 10f64.powf(-1.0 - 4.0 * random());
+        accepted += usize::from(judge(Shape::Polygon { vertices: &vertices, radius: Some(radius) }));
+        accepted += usize::from(judge(Shape::Polygon { vertices: &narrow, radius: Some(radius as f32) }));
+        accepted += usize::from(judge(Shape::Curve { points: &vertices }));
+    }
+    assert!(accepted > 60 && accepted < 150, "{accepted}");
 }

@@ -120,7 +120,7 @@ fn solve<R: Real>(rows: &mut [R], n: usize, solution: &mut [R]) -> Result<()> {
             }
         }
         let lead = at(pivot, k);
-        if !(lead.abs() > R::zero()) {
+        if lead == R::zero() || !lead.is_finite() {
             return Err(Status::Singular.into());
         }
         for row in tail.chunks_exact_mut(width.max(1)) {
@@ -239,6 +239,69 @@ fn transform<R: Real>(samples: &[R], _roots: &mut [R], top: usize, modes: &mut [
     for (j, pair) in modes.as_chunks_mut::<2>().0.iter_mut().take(2 * top + 1).enumerate() {
         if let Some(c) = data.get(if j >= top { j - top } else { m + j - top }) {
             *pair = [R::lit(c.re), R::lit(c.im)];
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::indexing_slicing)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::curve::Fourier;
+    use std::vec;
+    use std::vec::Vec;
+
+    fn memory_of(n: usize) -> Vec<f64> {
+        vec![f64::NAN; Memory::<f64>::len(&n).unwrap()]
+    }
+
+    #[test]
+    fn splines_are_a_partition_of_unity() {
+        for n in [3, 4, 7, 20] {
+            let p = |k: usize| crate::scalar::cis(f64::TAU * k as f64 / n as f64 + 0.4 * (k as f64).sin() / n as f64);
+            let mut knots = vec![f64::NAN; n + 2 * EXTRA];
+            write_knots(p, n, &mut knots);
+            assert!(knots.windows(2).all(|w| w[0] < w[1]), "{knots:?}");
+            for i in 0..200 {
+                let values: Vec<_> = basis(&knots, n, f64::TAU * i as f64 / 200.0).collect();
+                let sum: f64 = values.iter().map(|(_, v)| v).sum();
+                assert!((sum - 1.0).abs() < 4e-15 && values.iter().all(|(m, v)| *m < n && *v >= 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn curve_takes_its_points_at_the_knots_even_if_unevenly_spaced() {
+        for (n, stretch) in [(3, 0.0), (5, 0.3), (24, 0.0), (24, 0.6), (61, 0.5)] {
+            let p = |k: usize| {
+                let t = f64::TAU * k as f64 / n as f64;
+                let t = t + stretch * (3.0 * t).sin() / 3.0;
+                complex(5.0 + (1.0 + 0.2 * (2.0 * t).cos()) * t.cos(), 0.6 * t.sin())
+            };
+            let mut slab = memory_of(n);
+            let mut memory = Memory::split(&n, &mut slab).unwrap();
+            let mut store = vec![f64::NAN; coefficients_len(n)];
+            let modes = write(p, n, &mut memory, &mut store).unwrap();
+            let coefficients = part(&store, 0, 2 * modes.count);
+            let curve = Fourier { centre: 1.0, stride: 1.0, down: modes.down, coefficients };
+            let worst = (0..n).map(|k| cabs(curve.jet_real(at(memory.knots, k + EXTRA))[0] - p(k))).fold(0.0, f64::max);
+            assert!(worst < 1e-14 * 6.2, "{n} {stretch}: {worst:e}");
+        }
+    }
+
+    #[test]
+    fn transform_is_the_definition() {
+        let (m, top) = (48, 9);
+        let samples: Vec<f64> = (0..2 * m).map(|i| ((i * i) as f64 * 0.37).sin()).collect();
+        let (mut roots, mut modes) = (vec![f64::NAN; 2 * m], vec![f64::NAN; 2 * (2 * top + 1)]);
+        transform(&samples, &mut roots, top, &mut modes);
+        for j in 0..=2 * top {
+            let k = j as f64 - top as f64;
+            let sum = (0..m).fold(Complex::default(), |sum: Complex<f64>, i| {
+                sum + point(&samples, i) * crate::scalar::cis(-f64::TAU * k * i as f64 / m as f64)
+            });
+            assert!(cabs(sum - point(&modes, j)) < 1e-13 * m as f64);
         }
     }
 }
