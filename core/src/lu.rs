@@ -49,7 +49,7 @@ pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Re
         largest = largest.max(high);
         let panel = &*panel;
         let swaps = part(pivots, k, width);
-        let mut pairs = tail.chunks_exact_mut(2 * ld.max(1));
+        let mut pairs = tail.chunks_exact_mut(ld.saturating_mul(2).max(1));
         for pair in pairs.by_ref() {
             let (first, second) = pair.split_at_mut_checked(ld).unwrap_or((&mut [], &mut []));
             let x = eliminate_panel(panel, ld, k, width, swaps, first);
@@ -265,7 +265,8 @@ impl<R: Real> Factors<'_, R> {
             let width = PANEL.min(n - k);
             let panel = self.panel(k, width);
             let mut x = [R::zero(); PANEL];
-            for (p, u) in panel.chunks_exact(self.ld.max(1)).enumerate().rev() {
+            for p in (0..width).rev() {
+                let u = part(panel, p * self.ld, self.ld);
                 let value = at(b, k + p) / at(u, k + p);
                 put(b, k + p, value);
                 if let Some(x) = x.get_mut(p) {
@@ -286,8 +287,8 @@ impl<R: Real> Factors<'_, R> {
             let value = (at(b, c) - inner(part(u, 0, c), part(b, 0, c))) / at(u, c);
             put(b, c, value);
         }
-        for (c, l) in self.lu.chunks_exact(self.ld.max(1)).enumerate().take(n).rev() {
-            let below = n - c - 1;
+        for c in (0..n).rev() {
+            let (l, below) = (part(self.lu, c * self.ld, n), n - c - 1);
             let value = at(b, c) - inner(part(l, c + 1, below), part(b, c + 1, below));
             put(b, c, value);
         }
