@@ -1,14 +1,14 @@
 //! From a scene to a model: validation, layout of the store, and the set-up that happens once.
 
-use crate::boundary::{BoundaryRecord, Core, fill_nodes, fill_self_block, rotation_potential};
-use crate::model::{Control, CoordinateRecord, Formulation, Hold, LinkRecord, Model, ModelHead};
+use crate::boundary::BoundaryRecord;
+use crate::build::{build_boundaries, build_coordinates, build_links};
+use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead};
 use crate::plan::Plan;
-use crate::scalar::{Complex, Real, cabs, complex};
-use crate::scene::{CirculationModel, Drive, Joint, JointKind, Link, Mass, Root, Scene, Shape, Signal};
+use crate::scalar::Real;
+use crate::scene::{CirculationModel, Drive, Link, Mass, Root, Scene, Shape, Signal};
 use crate::se2::Pose;
-use crate::signal::SignalRecord;
 use crate::status::{Error, Place, Result, Status};
-use crate::workspace::part_mut;
+use crate::validate::validate;
 
 /// Lengths of a model's four arrays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -36,23 +36,20 @@ pub struct ModelMemory<'a, R> {
     pub reals: &'a mut [R],
 }
 
-/// Most nodes allowed on one boundary.
-const MOST_NODES: usize = 1 << 16;
-
 /// One boundary as the scene gives it.
 #[derive(Clone, Copy)]
-struct Item<'a, R> {
-    place: Place,
-    link: Option<usize>,
-    shape: Shape<'a, R>,
-    nodes: usize,
+pub(crate) struct Item<'a, R> {
+    pub(crate) place: Place,
+    pub(crate) link: Option<usize>,
+    pub(crate) shape: Shape<'a, R>,
+    pub(crate) nodes: usize,
     /// Centre of mass from the centroid; `None` for walls (frame = drawing frame).
-    centre: Option<[R; 2]>,
-    circulation: R,
-    pose: Pose<R>,
+    pub(crate) centre: Option<[R; 2]>,
+    pub(crate) circulation: R,
+    pub(crate) pose: Pose<R>,
 }
 
-fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Item<'a, R>> + Clone {
+pub(crate) fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Item<'a, R>> + Clone {
     let wall = |place, w: &crate::scene::Wall<'a, R>| Item {
         place,
         link: None,
@@ -79,7 +76,9 @@ fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Item<'a, 
     tank.chain(obstacles).chain(links)
 }
 
-fn each_link<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = (usize, usize, &'a Link<'a, R>)> + Clone {
+pub(crate) fn each_link<'a, R: Real>(
+    scene: &'a Scene<'a, R>,
+) -> impl Iterator<Item = (usize, usize, &'a Link<'a, R>)> + Clone {
     scene
         .bodies
         .iter()
@@ -193,10 +192,10 @@ fn lay_out<R: Real>(scene: &Scene<'_, R>, traits: &Traits, mut slot: impl FnMut(
 
 /// What a scene requires.
 #[derive(Clone, Copy)]
-struct Traits {
-    fluid: bool,
-    circulation: bool,
-    formulation: Formulation,
+pub(crate) struct Traits {
+    pub(crate) fluid: bool,
+    pub(crate) circulation: bool,
+    pub(crate) formulation: Formulation,
 }
 
 impl Traits {
@@ -292,316 +291,6 @@ impl<'a, R: Real> Model<'a, R> {
         Model { head, links, coordinates, boundaries, store }
     }
 }
-
-fn finite<R: Real>(what: &'static str, x: R) -> Result<()> {
-    if x.is_finite() { Ok(()) } else { Err(Error::new(Status::NotFinite).of(what, x.to_f64())) }
-}
-
-fn at_least_zero<R: Real>(what: &'static str, x: R) -> Result<()> {
-    finite(what, x)?;
-    if x >= R::zero() { Ok(()) } else { Err(Error::new(Status::OutOfRange).of(what, x.to_f64())) }
-}
-
-fn validate<R: Real>(scene: &Scene<'_, R>) -> Result<()> {
-    at_least_zero("density", scene.fluid_density)?;
-    finite("gravity", scene.gravity)?;
-    if let Some(r) = scene.repulsion {
-        at_least_zero("epsilon", r.epsilon)?;
-        finite("alpha", r.alpha)?;
-        if r.alpha <= R::zero() {
-            return Err(Error::new(Status::OutOfRange).of("alpha", r.alpha.to_f64()));
-        }
-    }
-    if scene.bodies.is_empty() {
-        return Err(Status::EmptyScene.into());
-    }
-    for item in items(scene) {
-        let here = |e: Error| e.at(item.place);
-        if item.nodes < 8 || item.nodes % 2 != 0 || item.nodes > MOST_NODES {
-            return Err(here(Error::new(Status::NodeCount).of("nodes", item.nodes as f64)));
-        }
-        for (what, x) in [
-            ("circulation", item.circulation),
-            ("position", item.pose.origin.re),
-            ("position", item.pose.origin.im),
-            ("angle", item.pose.turn.re),
-        ] {
-            finite(what, x).map_err(here)?;
-        }
-        if item.place == Place::Tank && item.circulation != R::zero() {
-            return Err(here(Error::new(Status::OutOfRange).of("circulation", item.circulation.to_f64())));
-        }
-    }
-    for (b, body) in scene.bodies.iter().enumerate() {
-        let here = |e: Error| e.at(Place::Body(b));
-        for (what, values) in [("position", body.pose), ("velocity", body.velocity)] {
-            for x in values {
-                finite(what, x).map_err(here)?;
-            }
-        }
-        if body.links.is_empty() {
-            return Err(here(Error::new(Status::EmptyScene).of("links", 0.0)));
-        }
-    }
-    for (b, l, link) in each_link(scene) {
-        validate_link(scene, l, link).map_err(|e| e.at(Place::Link(b, l)))?;
-    }
-    Ok(())
-}
-
-fn validate_link<R: Real>(scene: &Scene<'_, R>, l: usize, link: &Link<'_, R>) -> Result<()> {
-    let zero = R::zero();
-    match link.mass {
-        Mass::Density(d) => {
-            at_least_zero("density", d)?;
-            if d == zero && scene.fluid_density == zero {
-                return Err(Status::Massless.into());
-            }
-        }
-        Mass::Given { mass, inertia, centre_of_mass } => {
-            at_least_zero("mass", mass)?;
-            at_least_zero("inertia", inertia)?;
-            finite("centre_of_mass", centre_of_mass[0])?;
-            finite("centre_of_mass", centre_of_mass[1])?;
-            if scene.fluid_density == zero && (mass == zero || inertia == zero) {
-                return Err(Status::Massless.into());
-            }
-        }
-    }
-    let Some(joint) = link.joint else {
-        return if l == 0 { Ok(()) } else { Err(Status::BadParent.into()) };
-    };
-    if l == 0 || joint.parent >= l {
-        return Err(Error::new(Status::BadParent).of("parent", joint.parent as f64));
-    }
-    for x in joint.parent_anchor.into_iter().chain(joint.self_anchor) {
-        finite("anchor", x)?;
-    }
-    if let JointKind::Slider { axis, angle } = joint.kind {
-        finite("angle", angle)?;
-        let length = axis[0].hypot(axis[1]);
-        if !(length.is_finite() && length > zero) {
-            return Err(Error::new(Status::OutOfRange).of("axis", length.to_f64()));
-        }
-    }
-    match joint.drive {
-        Drive::Locked(value) => finite("locked", value),
-        Drive::Motion(_) => Ok(()),
-        Drive::Torque { stiffness, damping, rest, start, .. } => {
-            at_least_zero("stiffness", stiffness)?;
-            at_least_zero("damping", damping)?;
-            finite("rest", rest)?;
-            finite("start", start[0])?;
-            finite("start", start[1])
-        }
-    }
-}
-
-fn build_boundaries<R: Real>(
-    scene: &Scene<'_, R>,
-    traits: &Traits,
-    boundaries: &mut [BoundaryRecord<R>],
-    store: &mut [R],
-    scratch: &mut [R],
-) -> Result<()> {
-    for (i, item) in items(scene).enumerate() {
-        let here = |e: Error| e.at(item.place);
-        let shared = items(scene).enumerate().take(i).find(|(_, j)| {
-            j.link.is_some()
-                && item.link.is_some()
-                && j.shape == item.shape
-                && j.nodes == item.nodes
-                && j.centre == item.centre
-        });
-        let twin = shared.and_then(|(j, _)| boundaries.get(j).copied());
-        let Some(record) = boundaries.get_mut(i) else { return Err(Status::Internal.into()) };
-        if let Some(twin) = twin {
-            *record = BoundaryRecord { first: record.first, ..twin };
-        }
-        record.place = item.place;
-        record.link = item.link;
-        record.sign = if item.place == Place::Tank { R::one() } else { -R::one() };
-        record.nodes = item.nodes;
-        record.circulation = item.circulation;
-        record.pose = item.pose;
-        if twin.is_some() {
-            continue;
-        }
-        let own = part_mut(store, record.store_at, record.store_len);
-        (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
-        if let Some(centre) = item.centre {
-            let area = record.outline.view(own).properties().map_err(here)?;
-            record.origin = area.centroid + complex(centre[0], centre[1]);
-        }
-        fill_nodes(record, store).map_err(here)?;
-        if !traits.fluid {
-            continue;
-        }
-        if item.link.is_some() {
-            rotation_potential(record, &item.shape, store, scratch).map_err(here)?;
-            if traits.formulation != Formulation::Kirchhoff {
-                let n2 = item.nodes * item.nodes;
-                // The blocks lie behind the node arrays they are made from.
-                let (nodes, blocks) = store.split_at_mut_checked(record.self_at).ok_or(Status::Internal)?;
-                let (block, rest) = blocks.split_at_mut_checked(n2).ok_or(Status::Internal)?;
-                let regular = if traits.circulation { part_mut(rest, 0, n2) } else { &mut [] };
-                fill_self_block(record, nodes, block, regular).map_err(here)?;
-            }
-        }
-        if traits.circulation {
-            record.core = core_of(record, &item.shape, store);
-        }
-    }
-    Ok(())
-}
-
-/// Isolated circulatory flow: an ellipse's own, otherwise a vortex at the centroid or, if that is outside or
-/// close to the outline, at the innermost point of a coarse grid.
-fn core_of<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &[R]) -> Core<R> {
-    if let Shape::Ellipse { a, b } = *shape {
-        return Core { centre: -record.origin, axes: [a, b] };
-    }
-    let nodes = record.nodes(store);
-    let clearance = |z: Complex<R>| {
-        if crate::contact::encloses(&nodes, z) {
-            nodes.points().fold(R::MAX, |d, x| d.min(cabs(x - z)))
-        } else {
-            -R::one()
-        }
-    };
-    let count = R::count(nodes.x.len().max(1));
-    let mean = nodes.points().fold(Complex::default(), |s, x| s + x) / count;
-    let mut best = (clearance(mean), mean);
-    let first = best.0;
-    const GRID: usize = 32;
-    for i in 0..GRID {
-        for k in 0..GRID {
-            let side = |i| (R::count(2 * i + 1) / R::count(GRID) - R::one()) * record.reach;
-            let z = complex(side(i), side(k));
-            let d = clearance(z);
-            // The mean of the nodes is kept unless another point is clearly deeper inside.
-            if d > best.0 && d > first * R::TWO {
-                best = (d, z);
-            }
-        }
-    }
-    Core { centre: best.1, axes: [R::zero(); 2] }
-}
-
-fn build_links<R: Real>(
-    scene: &Scene<'_, R>,
-    links: &mut [LinkRecord<R>],
-    boundaries: &[BoundaryRecord<R>],
-    store: &[R],
-) -> Result<()> {
-    let walls = scene.obstacles.len() + usize::from(scene.tank.is_some());
-    let (mut coordinate, mut root) = (0, 0);
-    for (i, (b, l, link)) in each_link(scene).enumerate() {
-        let Some(boundary) = boundaries.get(walls + i) else { return Err(Status::Internal.into()) };
-        let area =
-            boundary.outline.view(crate::workspace::part(store, boundary.store_at, boundary.store_len)).properties()?;
-        let centroid = area.centroid - boundary.origin;
-        let (mass, inertia) = match link.mass {
-            Mass::Density(d) => (d * area.area, d * area.polar_moment),
-            Mass::Given { mass, inertia, .. } => (mass, inertia),
-        };
-        if l == 0 {
-            root = i;
-        }
-        let parent = link.joint.map_or(i, |j| root + j.parent);
-        let parent_centroid = links.get(parent).map_or(Complex::default(), |p| p.centroid);
-        let hold = link.joint.map_or(Hold::Root, |j| hold(&j, parent_centroid, centroid));
-        let record = LinkRecord {
-            place: (b, l),
-            parent,
-            coordinate,
-            hold,
-            mass,
-            inertia,
-            area: area.area,
-            perimeter: area.perimeter,
-            centroid,
-        };
-        if let Some(slot) = links.get_mut(i) {
-            *slot = record;
-        }
-        coordinate += if l == 0 { 3 } else { 1 };
-    }
-    Ok(())
-}
-
-/// Anchors are given from the centroids; links are placed by their centres of mass.
-fn hold<R: Real>(joint: &Joint<'_, R>, parent_centroid: Complex<R>, centroid: Complex<R>) -> Hold<R> {
-    let parent = parent_centroid + complex(joint.parent_anchor[0], joint.parent_anchor[1]);
-    let own = centroid + complex(joint.self_anchor[0], joint.self_anchor[1]);
-    match joint.kind {
-        JointKind::Hinge => Hold::Hinge { parent, own },
-        JointKind::Slider { axis, angle } => {
-            let axis = complex(axis[0], axis[1]);
-            Hold::Slider { parent, own, axis: axis / cabs(axis), angle }
-        }
-    }
-}
-
-fn build_coordinates<R: Real>(
-    scene: &Scene<'_, R>,
-    coordinates: &mut [CoordinateRecord<R>],
-    store: &mut [R],
-    signals_at: usize,
-) -> Result<usize> {
-    let (mut at, mut channels, mut free, mut link) = (signals_at, 0, 0, 0);
-    let mut slots = coordinates.iter_mut();
-    let mut push = |mut record: CoordinateRecord<R>, signal: Option<Signal<'_, R>>| -> Result<()> {
-        if let Some(signal) = signal {
-            record.constant = signal.is_constant();
-            record.signal = signal.compile(part_mut(store, at, signal.store_len()), at, channels)?;
-            channels += usize::from(record.signal.channel().is_some());
-            at += signal.store_len();
-        } else {
-            record.signal = SignalRecord::default();
-        }
-        if record.control != Control::Prescribed {
-            record.free = free;
-            free += 1;
-        }
-        if let Some(slot) = slots.next() {
-            *slot = record;
-        }
-        Ok(())
-    };
-    for (b, body) in scene.bodies.iter().enumerate() {
-        let root = CoordinateRecord { link, ..CoordinateRecord::default() };
-        for (k, (position, velocity)) in body.pose.into_iter().zip(body.velocity).enumerate() {
-            let record = CoordinateRecord { component: k, base: position, start: [position, velocity], ..root };
-            match body.root {
-                Root::Free => push(record, None),
-                Root::Prescribed(signals) => {
-                    let signal = match (k, signals) {
-                        (0, [s, _, _]) | (1, [_, s, _]) | (_, [_, _, s]) => s,
-                    };
-                    push(CoordinateRecord { control: Control::Prescribed, ..record }, Some(signal))
-                }
-            }
-            .map_err(|e| e.at(Place::Body(b)))?;
-        }
-        for (l, joint) in body.links.iter().enumerate().filter_map(|(l, x)| x.joint.map(|j| (l, j))) {
-            let joint_of = CoordinateRecord { link: link + l, component: 3, ..CoordinateRecord::default() };
-            let given = CoordinateRecord { control: Control::Prescribed, ..joint_of };
-            match joint.drive {
-                Drive::Locked(value) => push(given, Some(Signal::Constant(value))),
-                Drive::Motion(signal) => push(given, Some(signal)),
-                Drive::Torque { torque, stiffness, damping, rest, start } => push(
-                    CoordinateRecord { control: Control::Torque, stiffness, damping, rest, start, ..joint_of },
-                    Some(torque),
-                ),
-            }
-            .map_err(|e| e.at(Place::Link(b, l)))?;
-        }
-        link += body.links.len();
-    }
-    Ok(channels)
-}
-
 fn head<R: Real>(
     scene: &Scene<'_, R>,
     traits: &Traits,
