@@ -1,16 +1,16 @@
 //! Fills a model's records and store: boundaries, links, coordinates.
 
 use crate::boundary::{BoundaryRecord, Core, fill_nodes, fill_self_block, rotation_potential};
-use crate::compile::{Traits, each_link, items};
+use crate::compile::{Traits, each_link, items, wall_count};
 use crate::model::{Control, CoordinateRecord, Formulation, Hold, LinkRecord};
 use crate::scalar::{Complex, Real, cabs, complex};
-use crate::scene::{Drive, Joint, JointKind, Mass, Root, Scene, Shape, Signal};
+use crate::scene::{Description, Drive, Joint, JointKind, Mass, Root, Shape, Signal};
 use crate::signal::SignalRecord;
 use crate::status::{Error, Place, Result, Status};
 use crate::workspace::part_mut;
 
-pub(crate) fn build_boundaries<R: Real>(
-    scene: &Scene<'_, R>,
+pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
+    scene: &S,
     traits: &Traits,
     boundaries: &mut [BoundaryRecord<R>],
     store: &mut [R],
@@ -100,13 +100,13 @@ fn core_of<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &[R
     Core { centre: best.1, axes: [R::zero(); 2] }
 }
 
-pub(crate) fn build_links<R: Real>(
-    scene: &Scene<'_, R>,
+pub(crate) fn build_links<R: Real, S: Description<R>>(
+    scene: &S,
     links: &mut [LinkRecord<R>],
     boundaries: &[BoundaryRecord<R>],
     store: &[R],
 ) -> Result<()> {
-    let walls = scene.obstacles.len() + usize::from(scene.tank.is_some());
+    let walls = wall_count(scene);
     let (mut coordinate, mut root) = (0, 0);
     for (i, (b, l, link)) in each_link(scene).enumerate() {
         let Some(boundary) = boundaries.get(walls + i) else { return Err(Status::Internal.into()) };
@@ -155,8 +155,8 @@ fn hold<R: Real>(joint: &Joint<'_, R>, parent_centroid: Complex<R>, centroid: Co
     }
 }
 
-pub(crate) fn build_coordinates<R: Real>(
-    scene: &Scene<'_, R>,
+pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
+    scene: &S,
     coordinates: &mut [CoordinateRecord<R>],
     store: &mut [R],
     signals_at: usize,
@@ -181,7 +181,7 @@ pub(crate) fn build_coordinates<R: Real>(
         }
         Ok(())
     };
-    for (b, body) in scene.bodies.iter().enumerate() {
+    for (b, body) in (0..scene.body_count()).filter_map(|b| Some((b, scene.body(b)?))) {
         let root = CoordinateRecord { link, ..CoordinateRecord::default() };
         for (k, (position, velocity)) in body.pose.into_iter().zip(body.velocity).enumerate() {
             let record = CoordinateRecord { component: k, base: position, start: [position, velocity], ..root };
@@ -196,7 +196,7 @@ pub(crate) fn build_coordinates<R: Real>(
             }
             .map_err(|e| e.at(Place::Body(b)))?;
         }
-        for (l, joint) in body.links.iter().enumerate().filter_map(|(l, x)| x.joint.map(|j| (l, j))) {
+        for (l, joint) in (0..scene.link_count(b)).filter_map(|l| Some((l, scene.link(b, l)?.joint?))) {
             let joint_of = CoordinateRecord { link: link + l, component: 3, ..CoordinateRecord::default() };
             let given = CoordinateRecord { control: Control::Prescribed, ..joint_of };
             match joint.drive {
@@ -209,7 +209,7 @@ pub(crate) fn build_coordinates<R: Real>(
             }
             .map_err(|e| e.at(Place::Link(b, l)))?;
         }
-        link += body.links.len();
+        link += scene.link_count(b);
     }
     Ok(channels)
 }

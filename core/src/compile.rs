@@ -5,7 +5,7 @@ use crate::build::{build_boundaries, build_coordinates, build_links};
 use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead};
 use crate::plan::Plan;
 use crate::scalar::Real;
-use crate::scene::{CirculationModel, Drive, Link, Mass, Root, Scene, Shape, Signal};
+use crate::scene::{CirculationModel, Description, Drive, Link, Mass, Root, Shape, Signal};
 use crate::se2::Pose;
 use crate::status::{Error, Place, Result, Status};
 use crate::validate::validate;
@@ -49,8 +49,8 @@ pub(crate) struct Item<'a, R> {
     pub(crate) pose: Pose<R>,
 }
 
-pub(crate) fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Item<'a, R>> + Clone {
-    let wall = |place, w: &crate::scene::Wall<'a, R>| Item {
+pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Item<'a, R>> + Clone {
+    let wall = |place, w: crate::scene::Wall<'a, R>| Item {
         place,
         link: None,
         shape: w.shape,
@@ -59,8 +59,8 @@ pub(crate) fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item 
         circulation: w.circulation,
         pose: Pose::new(w.position[0], w.position[1], w.angle),
     };
-    let tank = scene.tank.iter().map(move |w| wall(Place::Tank, w));
-    let obstacles = scene.obstacles.iter().enumerate().map(move |(i, w)| wall(Place::Obstacle(i), w));
+    let tank = scene.tank().into_iter().map(move |w| wall(Place::Tank, w));
+    let obstacles = (0..scene.obstacle_count()).filter_map(move |i| Some(wall(Place::Obstacle(i), scene.obstacle(i)?)));
     let links = each_link(scene).enumerate().map(|(i, (b, l, link))| Item {
         place: Place::Link(b, l),
         link: Some(i),
@@ -76,28 +76,33 @@ pub(crate) fn items<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item 
     tank.chain(obstacles).chain(links)
 }
 
-pub(crate) fn each_link<'a, R: Real>(
-    scene: &'a Scene<'a, R>,
-) -> impl Iterator<Item = (usize, usize, &'a Link<'a, R>)> + Clone {
-    scene
-        .bodies
-        .iter()
-        .enumerate()
-        .flat_map(|(b, body)| body.links.iter().enumerate().map(move |(l, link)| (b, l, link)))
+/// Every link with its body and place in the body.
+pub(crate) fn each_link<'a, R: Real, S: Description<R>>(
+    scene: &'a S,
+) -> impl Iterator<Item = (usize, usize, Link<'a, R>)> + Clone {
+    (0..scene.body_count())
+        .flat_map(move |b| (0..scene.link_count(b)).filter_map(move |l| Some((b, l, scene.link(b, l)?))))
 }
 
-fn motions<'a, R: Real>(scene: &'a Scene<'a, R>) -> impl Iterator<Item = Signal<'a, R>> + Clone {
-    scene.bodies.iter().flat_map(|body| {
+/// The signal of every coordinate, in their order.
+fn motions<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Signal<'a, R>> + Clone {
+    (0..scene.body_count()).filter_map(move |b| Some((b, scene.body(b)?))).flat_map(move |(b, body)| {
         let root = match body.root {
             Root::Prescribed(signals) => signals,
             Root::Free => [Signal::Constant(R::zero()); 3],
         };
-        root.into_iter().chain(body.links.iter().filter_map(|l| l.joint).map(|j| match j.drive {
+        let joints = (0..scene.link_count(b)).filter_map(move |l| scene.link(b, l)?.joint);
+        root.into_iter().chain(joints.map(|j| match j.drive {
             Drive::Locked(value) => Signal::Constant(value),
             Drive::Motion(signal) => signal,
             Drive::Torque { torque, .. } => torque,
         }))
     })
+}
+
+/// Number of fixed boundaries.
+pub(crate) fn wall_count<R: Real, S: Description<R>>(scene: &S) -> usize {
+    scene.obstacle_count() + usize::from(scene.tank().is_some())
 }
 
 /// Offsets into the store of one boundary.
@@ -134,7 +139,11 @@ fn square(n: usize) -> Result<usize> {
 }
 
 /// The layout: the same lines count and place. `slot` sees each boundary's offsets in order.
-fn lay_out<R: Real>(scene: &Scene<'_, R>, traits: &Traits, mut slot: impl FnMut(usize, Slots)) -> Result<Layout> {
+fn lay_out<R: Real, S: Description<R>>(
+    scene: &S,
+    traits: &Traits,
+    mut slot: impl FnMut(usize, Slots),
+) -> Result<Layout> {
     let (mut layout, mut at, mut scratch) = (Layout::default(), 0, 0);
     let fluid = traits.fluid;
     let general = fluid && traits.formulation != Formulation::Kirchhoff;
@@ -199,17 +208,19 @@ pub(crate) struct Traits {
 }
 
 impl Traits {
-    fn of<R: Real>(scene: &Scene<'_, R>) -> Traits {
-        let fluid = scene.fluid_density > R::zero();
+    fn of<R: Real, S: Description<R>>(scene: &S) -> Traits {
+        let settings = scene.settings();
+        let fluid = settings.fluid_density > R::zero();
         let circulation = fluid && items(scene).any(|i| i.circulation != R::zero());
-        let lone = scene.shortcuts && scene.bodies.len() == 1 && scene.tank.is_none() && scene.obstacles.is_empty();
-        let free_root = scene.bodies.iter().all(|b| matches!(b.root, Root::Free));
+        let lone = settings.shortcuts && scene.body_count() == 1 && wall_count(scene) == 0;
+        let free_root =
+            (0..scene.body_count()).all(|b| scene.body(b).is_some_and(|body| matches!(body.root, Root::Free)));
         let links = each_link(scene).count();
         let given_joints =
             each_link(scene).all(|(_, _, l)| l.joint.is_none_or(|j| !matches!(j.drive, Drive::Torque { .. })));
         let formulation = if lone && free_root && links == 1 && fluid {
             Formulation::Kirchhoff
-        } else if lone && free_root && links > 1 && given_joints && scene.gravity == R::zero() && !circulation {
+        } else if lone && free_root && links > 1 && given_joints && settings.gravity == R::zero() && !circulation {
             Formulation::LockedMomentum
         } else {
             Formulation::Velocity
@@ -223,7 +234,7 @@ impl<'a, R: Real> Model<'a, R> {
     ///
     /// # Errors
     /// Any of the set-up errors of [`Status`], with the place in the scene.
-    pub fn requirement(scene: &Scene<'_, R>) -> Result<ModelRequirement> {
+    pub fn requirement(scene: &impl Description<R>) -> Result<ModelRequirement> {
         validate(scene)?;
         let layout = lay_out(scene, &Traits::of(scene), |_, _| ())?;
         Ok(ModelRequirement {
@@ -238,7 +249,7 @@ impl<'a, R: Real> Model<'a, R> {
     ///
     /// # Errors
     /// As [`Model::requirement`], and shape errors; the memory's content is then of no use, nothing else is touched.
-    pub fn init(scene: &Scene<'_, R>, memory: &mut ModelMemory<'_, R>) -> Result<ModelHead<R>> {
+    pub fn init(scene: &impl Description<R>, memory: &mut ModelMemory<'_, R>) -> Result<ModelHead<R>> {
         let need = Self::requirement(scene)?;
         let given = [memory.links.len(), memory.coordinates.len(), memory.boundaries.len(), memory.reals.len()];
         for (given, need) in given.into_iter().zip([need.links, need.coordinates, need.boundaries, need.reals]) {
@@ -291,8 +302,8 @@ impl<'a, R: Real> Model<'a, R> {
         Model { head, links, coordinates, boundaries, store }
     }
 }
-fn head<R: Real>(
-    scene: &Scene<'_, R>,
+fn head<R: Real, S: Description<R>>(
+    scene: &S,
     traits: &Traits,
     layout: &Layout,
     coordinates: &[CoordinateRecord<R>],
@@ -302,13 +313,15 @@ fn head<R: Real>(
     let prescribed_moves = coordinates.iter().any(|c| c.control == Control::Prescribed && !c.constant);
     let tracks_work = prescribed_moves || coordinates.iter().any(|c| c.control == Control::Torque);
     let motion = if traits.formulation == Formulation::LockedMomentum { 3 } else { 2 * free };
-    let walls = scene.obstacles.len() + usize::from(scene.tank.is_some());
+    let settings = scene.settings();
+    let walls = wall_count(scene);
     let stepping = traits.fluid && traits.formulation != Formulation::Kirchhoff;
     let unknowns = if stepping { layout.unknowns } else { 0 };
     // Columns of the boundary system, one transposed and one ordinary solve for the force, and for circulation
     // its potential, its transposed potential and the rate of its potential.
     let columns = free + usize::from(prescribed_moves);
-    let circulation = if traits.circulation { 2 + usize::from(scene.circulation == CirculationModel::Full) } else { 0 };
+    let circulation =
+        if traits.circulation { 2 + usize::from(settings.circulation == CirculationModel::Full) } else { 0 };
     let mut plan = Plan {
         formulation: traits.formulation,
         links: each_link(scene).count(),
@@ -320,19 +333,19 @@ fn head<R: Real>(
         prescribed_coordinates: coordinates.len() - free,
         state_len: motion + usize::from(tracks_work),
         fluid: traits.fluid,
-        gravity: scene.gravity != R::zero(),
-        repulsion: scene.repulsion.is_some_and(|r| r.epsilon != R::zero()),
+        gravity: settings.gravity != R::zero(),
+        repulsion: settings.repulsion.is_some_and(|r| r.epsilon != R::zero()),
         circulation: traits.circulation,
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
     plan.operations = plan.count_operations();
     let mut head = ModelHead {
-        fluid_density: scene.fluid_density,
-        gravity: scene.gravity,
-        repulsion: scene.repulsion.filter(|r| r.epsilon != R::zero()),
-        gyroscopic: traits.circulation && scene.circulation == CirculationModel::Full,
-        force: scene.force,
+        fluid_density: settings.fluid_density,
+        gravity: settings.gravity,
+        repulsion: settings.repulsion.filter(|r| r.epsilon != R::zero()),
+        gyroscopic: traits.circulation && settings.circulation == CirculationModel::Full,
+        force: settings.force,
         wall_nodes: layout.wall_nodes,
         walls_at: layout.walls_at,
         walls_regular_at: layout.walls_regular_at,

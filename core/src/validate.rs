@@ -2,7 +2,7 @@
 
 use crate::compile::{each_link, items};
 use crate::scalar::Real;
-use crate::scene::{Drive, JointKind, Link, Mass, Scene};
+use crate::scene::{Description, Drive, JointKind, Link, Mass};
 use crate::status::{Error, Place, Result, Status};
 
 /// Most nodes allowed on one boundary.
@@ -17,17 +17,18 @@ fn at_least_zero<R: Real>(what: &'static str, x: R) -> Result<()> {
     if x >= R::zero() { Ok(()) } else { Err(Error::new(Status::OutOfRange).of(what, x.to_f64())) }
 }
 
-pub(crate) fn validate<R: Real>(scene: &Scene<'_, R>) -> Result<()> {
-    at_least_zero("density", scene.fluid_density)?;
-    finite("gravity", scene.gravity)?;
-    if let Some(r) = scene.repulsion {
+pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
+    let settings = scene.settings();
+    at_least_zero("density", settings.fluid_density)?;
+    finite("gravity", settings.gravity)?;
+    if let Some(r) = settings.repulsion {
         at_least_zero("epsilon", r.epsilon)?;
         finite("alpha", r.alpha)?;
         if r.alpha <= R::zero() {
             return Err(Error::new(Status::OutOfRange).of("alpha", r.alpha.to_f64()));
         }
     }
-    if scene.bodies.is_empty() {
+    if scene.body_count() == 0 {
         return Err(Status::EmptyScene.into());
     }
     for item in items(scene) {
@@ -47,29 +48,29 @@ pub(crate) fn validate<R: Real>(scene: &Scene<'_, R>) -> Result<()> {
             return Err(here(Error::new(Status::OutOfRange).of("circulation", item.circulation.to_f64())));
         }
     }
-    for (b, body) in scene.bodies.iter().enumerate() {
+    for (b, body) in (0..scene.body_count()).filter_map(|b| Some((b, scene.body(b)?))) {
         let here = |e: Error| e.at(Place::Body(b));
         for (what, values) in [("position", body.pose), ("velocity", body.velocity)] {
             for x in values {
                 finite(what, x).map_err(here)?;
             }
         }
-        if body.links.is_empty() {
+        if scene.link_count(b) == 0 {
             return Err(here(Error::new(Status::EmptyScene).of("links", 0.0)));
         }
     }
     for (b, l, link) in each_link(scene) {
-        validate_link(scene, l, link).map_err(|e| e.at(Place::Link(b, l)))?;
+        validate_link(settings.fluid_density, l, &link).map_err(|e| e.at(Place::Link(b, l)))?;
     }
     Ok(())
 }
 
-fn validate_link<R: Real>(scene: &Scene<'_, R>, l: usize, link: &Link<'_, R>) -> Result<()> {
+fn validate_link<R: Real>(fluid_density: R, l: usize, link: &Link<'_, R>) -> Result<()> {
     let zero = R::zero();
     match link.mass {
         Mass::Density(d) => {
             at_least_zero("density", d)?;
-            if d == zero && scene.fluid_density == zero {
+            if d == zero && fluid_density == zero {
                 return Err(Status::Massless.into());
             }
         }
@@ -78,7 +79,7 @@ fn validate_link<R: Real>(scene: &Scene<'_, R>, l: usize, link: &Link<'_, R>) ->
             at_least_zero("inertia", inertia)?;
             finite("centre_of_mass", centre_of_mass[0])?;
             finite("centre_of_mass", centre_of_mass[1])?;
-            if scene.fluid_density == zero && (mass == zero || inertia == zero) {
+            if fluid_density == zero && (mass == zero || inertia == zero) {
                 return Err(Status::Massless.into());
             }
         }
