@@ -1,7 +1,7 @@
 //! Fills a model's records and store: boundaries, links, coordinates.
 
 use crate::boundary::{BoundaryRecord, Core, fill_nodes, fill_self_block, rotation_potential};
-use crate::compile::{Traits, each_link, items, wall_count};
+use crate::layout::{Traits, each_link, items, wall_count};
 use crate::model::{Control, CoordinateRecord, Formulation, Hold, LinkRecord};
 use crate::scalar::{Complex, Real, cabs, complex};
 use crate::scene::{Description, Drive, Joint, JointKind, Mass, Root, Shape, Signal};

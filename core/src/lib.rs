@@ -52,6 +52,7 @@ pub(crate) mod dynamics;
 pub(crate) mod forces;
 pub mod grading;
 pub mod integrate;
+mod layout;
 pub(crate) mod lone;
 pub mod lu;
 #[cfg(feature = "faer")]

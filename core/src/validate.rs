@@ -1,6 +1,6 @@
 //! What a scene must satisfy before anything is built: every refusal names the place, the quantity and its value.
 
-use crate::compile::{each_link, items};
+use crate::layout::{each_link, items};
 use crate::scalar::Real;
 use crate::scene::{Description, Drive, JointKind, Link, Mass};
 use crate::status::{Error, Place, Result, Status};
