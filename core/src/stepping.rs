@@ -38,13 +38,17 @@ impl<R: Real> Sim<'_, R> {
     }
 
     /// Shows the state at `t_out`; the integrator may run ahead, but not beyond `t_stop`. Cheaper than [`Sim::advance`] when
-    /// output is wanted at many times: a variable-step method keeps its steps and interpolates.
+    /// output is wanted at many times: a variable-step method keeps its steps and interpolates. A fixed-step method ends
+    /// with a shortened Runge–Kutta step, so output times should be multiples of its step.
     ///
     /// # Errors
     /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
     pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
         if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.head.time) {
             return Err(Error::new(Status::BadStep).of("t", t_out.to_f64()));
+        }
+        if t_out == self.head.time {
+            return Ok(());
         }
         match self.head.method {
             Method::Adams { .. } => {
@@ -54,9 +58,6 @@ impl<R: Real> Sim<'_, R> {
                             self.show_adams(self.head.adams.time())?;
                         }
                         return Err(e);
-                    }
-                    if t_out == self.head.time {
-                        break;
                     }
                 }
                 self.show_adams(t_out)
