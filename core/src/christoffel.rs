@@ -10,7 +10,7 @@
 use crate::articulation::twist_of;
 use crate::boundary::Nodes;
 use crate::model::Model;
-use crate::nystrom::{Poses, TargetColumns, induced_velocity, induced_velocity_both, targets};
+use crate::nystrom::{Poses, TargetColumns, fill_targets, induced_velocity, induced_velocity_both};
 use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
 use crate::se2::Twist;
 use crate::workspace::{copy, part, part_mut};
@@ -55,9 +55,7 @@ pub(crate) fn each_induced<R: Real>(
             }
             let n = target.nodes;
             let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
-            for ((x, y), z) in zx.iter_mut().zip(zy.iter_mut()).zip(targets(&nodes, poses.get(i), poses.get(j))) {
-                (*x, *y) = (z.re, z.im);
-            }
+            fill_targets(&nodes, poses.get(i), poses.get(j), zx, zy);
             let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
             hx.fill(R::zero());
             hy.fill(R::zero());
@@ -153,9 +151,7 @@ pub(crate) fn pair_pass<R: Real>(
             }
             let n = target.nodes;
             let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
-            for ((x, y), z) in zx.iter_mut().zip(zy.iter_mut()).zip(targets(&nodes, poses.get(i), poses.get(j))) {
-                (*x, *y) = (z.re, z.im);
-            }
+            fill_targets(&nodes, poses.get(i), poses.get(j), zx, zy);
             let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
             hx.fill(R::zero());
             hy.fill(R::zero());

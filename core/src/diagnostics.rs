@@ -5,8 +5,7 @@ use crate::articulation::{put_three, twist_of};
 use crate::christoffel::{PairScratch, PassResult, pair_pass};
 pub use crate::contact::Gap;
 use crate::contact::smallest_gap;
-pub use crate::dynamics::Counters;
-use crate::dynamics::{Work, flow, joint_torque, scratch, system};
+use crate::dynamics::joint_torque;
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::model::{Control, Formulation, Model};
 use crate::nystrom::Poses;
@@ -16,6 +15,8 @@ use crate::potentials::{
 use crate::scalar::Real;
 use crate::sim::Sim;
 use crate::status::{Error, Result, Status};
+pub use crate::work::Counters;
+use crate::work::{Work, flow, scratch, system};
 use crate::workspace::{at, axpy, copy, part, put};
 
 /// Energies, J/m.
@@ -52,7 +53,7 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn prepare_motion(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
         self.fill_jacobian(model);
         self.solve_fluid(model, counters)?;
-        self.solve_motion(model);
+        self.solve_motion(model, true);
         Ok(())
     }
 
@@ -260,11 +261,42 @@ impl<R: Real> Sim<'_, R> {
     pub fn christoffel(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
         self.refresh()?;
-        self.work.qdd.fill(R::zero());
         let model = self.model;
-        self.work.force_of_accelerations(&model);
+        self.work.christoffel_force(&model);
         copy(out, self.work.force);
         self.head.fresh = false;
+        Ok(())
+    }
+
+    /// The full tensor Γ of the Christoffel force, ⟨Γ, v, w⟩_a = Σ Γ_aij v_i w_j: n = 3 links, entry (a, i, j) at a + n (i + n j),
+    /// symmetric in i and j. By polarization: n (n+1)/2 forces, each O(N²). For inspection, never needed in a step.
+    ///
+    /// # Errors
+    /// `Length` unless n³ long, and as [`Sim::energy`].
+    pub fn christoffel_tensor(&mut self, out: &mut [R]) -> Result<()> {
+        let n = self.rows();
+        self.expect(out.len(), n * n * n)?;
+        self.refresh()?;
+        let model = self.model;
+        self.head.fresh = false;
+        // Γ(e_i, e_i) first, then 2 Γ(e_i, e_j) = Γ(e_i + e_j, e_i + e_j) − Γ(e_i, e_i) − Γ(e_j, e_j).
+        for (i, j) in (0..n).map(|i| (i, i)).chain((0..n).flat_map(|j| (0..j).map(move |i| (i, j)))) {
+            self.work.qd.fill(R::zero());
+            put(self.work.qd, i, R::one());
+            put(self.work.qd, j, R::one());
+            self.work.christoffel_force(&model);
+            for a in 0..n {
+                let force = at(self.work.force, a);
+                let entry = |i: usize, j: usize| a + n * (i + n * j);
+                if i == j {
+                    put(out, entry(i, i), force);
+                } else {
+                    let mixed = (force - at(out, entry(i, i)) - at(out, entry(j, j))) * R::HALF;
+                    put(out, entry(i, j), mixed);
+                    put(out, entry(j, i), mixed);
+                }
+            }
+        }
         Ok(())
     }
 
@@ -350,10 +382,8 @@ impl<R: Real> Sim<'_, R> {
         let largest = |x: &[R]| x.iter().fold(R::zero(), |m, x| m.max(x.abs()));
         // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l, both from one more pass.
         let w = &mut self.work;
-        w.qdd.fill(zero);
-        w.force_of_accelerations(&model);
+        w.christoffel_force(&model);
         let scale = largest(w.force);
-        w.solve_motion(&model);
         let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
         pair_pass(&model, Poses(w.poses), w.qd, w.density, w.adjoint, &mut scratch!(w), out);
         let system = system!(w);

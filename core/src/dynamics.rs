@@ -7,280 +7,21 @@
 //! The fluid's part of M w is formed from both halves of the symmetrized discrete added mass, so the discrete
 //! energy balance is exact at any resolution.
 
-use crate::articulation::{
-    accelerations, jacobian_column, place_links, project, put_three, set_coordinates, twist_of, velocities,
-};
+use crate::articulation::{accelerations, project, put_three, twist_of, velocities};
 use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, pair_pass, without_turning};
 use crate::forces::{buoyancy, circulation, repulsion};
-use crate::lu::{Factors, factor};
-use crate::model::{Control, Formulation, Model, ModelHead};
-use crate::nystrom::{Poses, put_pose};
+use crate::model::{Control, Formulation, Model};
+use crate::nystrom::Poses;
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
-use crate::scalar::{Complex, Real};
+use crate::scalar::Real;
 use crate::scene::ForceFormula;
-use crate::status::{Error, Result, Status};
-use crate::workspace::{add, at, axpy, buffers, copy, inner, part, part_mut, put};
+use crate::status::{Result, Status};
+use crate::work::{Counters, Work, flow, lone_momentum, scratch, system};
+use crate::workspace::{add, at, axpy, copy, inner, part, put};
 
-/// Numbers that the buffers' lengths follow from.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Dims {
-    pub links: usize,
-    pub boundaries: usize,
-    pub coordinates: usize,
-    pub free: usize,
-    /// Unknowns of the boundary system while stepping (0: none).
-    pub unknowns: usize,
-    pub ld: usize,
-    pub columns: usize,
-    /// Unknowns if there is circulation, else 0.
-    pub circulating: usize,
-    /// 1 if there is repulsion, gravity or circulation to keep a vector for.
-    pub channels: usize,
-}
-
-impl Dims {
-    pub(crate) fn of<R: Real>(head: &ModelHead<R>, coordinates: usize) -> Dims {
-        let p = &head.plan;
-        Dims {
-            links: p.links,
-            boundaries: p.links + p.walls,
-            coordinates,
-            free: p.free_coordinates,
-            unknowns: p.unknowns,
-            // An odd multiple of a cache line keeps columns from falling on the same lines.
-            ld: if p.unknowns == 0 { 0 } else { p.unknowns + 8 },
-            columns: p.free_coordinates + usize::from(head.prescribed_moves),
-            circulating: if p.circulation { p.unknowns } else { 0 },
-            channels: head.channels,
-        }
-    }
-}
-
-buffers! {
-    /// Scratch and results of one evaluation.
-    pub(crate) struct Work(d: Dims) {
-        q: 3 * d.links,
-        qd: 3 * d.links,
-        qdd: 3 * d.links,
-        poses: 4 * d.boundaries,
-        channels: d.channels * crate::signal::CHANNEL_LEN,
-        s: d.coordinates,
-        ds: d.coordinates,
-        dds: d.coordinates,
-        generalized: d.coordinates,
-        jacobian: 3 * d.links * d.columns,
-        moving: 3 * d.links * d.columns,
-        momenta: 3 * d.links * d.columns,
-        reduced: d.free * (d.free + 1),
-        reduced_pivots: d.free,
-        drift: 3 * d.links,
-        v: 3 * d.links,
-        inertial: 3 * d.links,
-        momentum: 3 * d.links,
-        gradient: 3 * d.links,
-        force: 3 * d.links,
-        spare: 3 * d.links,
-        matrix: d.ld * (d.unknowns + d.columns),
-        pivots: d.unknowns,
-        regular: d.circulating * d.circulating,
-        density: d.unknowns,
-        adjoint: d.unknowns,
-        rate: d.unknowns,
-        transposed: d.unknowns,
-        solution: d.unknowns,
-        second: d.unknowns,
-        zx: d.unknowns,
-        zy: d.unknowns,
-        hx: d.unknowns,
-        hy: d.unknowns,
-        fx: d.unknowns,
-        fy: d.unknowns,
-        stream: d.circulating,
-        normal: d.circulating,
-        tangential: d.circulating,
-        potential: d.circulating,
-        circulation_adjoint: d.circulating,
-        circulation_spare: d.circulating,
-        circulation_second: d.circulating,
-    }
-}
-
-/// The bundles that the lower modules take, borrowed from a `Work`.
-macro_rules! system {
-    ($w:expr) => {
-        BoundarySystem {
-            matrix: $w.matrix,
-            ld: $w.pivots.len() + 8,
-            unknowns: $w.pivots.len(),
-            pivots: $w.pivots,
-            regular: $w.regular,
-        }
-    };
-}
-macro_rules! flow {
-    ($w:expr) => {
-        circulation::Flow {
-            stream: $w.stream,
-            normal: $w.normal,
-            tangential: $w.tangential,
-            potential: $w.potential,
-            adjoint: $w.circulation_adjoint,
-            spare: $w.circulation_spare,
-            second: $w.circulation_second,
-        }
-    };
-}
-macro_rules! scratch {
-    ($w:expr) => {
-        PairScratch { zx: $w.zx, zy: $w.zy, hx: $w.hx, hy: $w.hy, fx: $w.fx, fy: $w.fy }
-    };
-}
-pub(crate) use {flow, scratch, system};
-
-/// Counts that a simulation keeps.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub struct Counters {
-    /// Evaluations of the equations of motion.
-    pub evaluations: u64,
-    /// Factorizations of the boundary system.
-    pub factorizations: u64,
-    /// Accepted steps.
-    pub steps: u64,
-    /// Rejected steps.
-    pub rejected: u64,
-}
-
-/// What the fluid's terms of the last evaluation were made for.
 impl<R: Real> Work<'_, R> {
-    /// Places everything at (t, p, ṗ): coordinates, poses, velocities. Refuses contact and non-finite states.
-    pub(crate) fn place(&mut self, model: &Model<'_, R>, t: R, p: &[R], dp: &[R]) -> Result<()> {
-        set_coordinates(model, t, p, dp, self.channels, self.s, self.ds, self.dds);
-        place_links(model, self.s, self.q, self.poses);
-        velocities(model, self.s, self.ds, self.q, self.qd);
-        if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
-            return Err(Status::NonFiniteState.into());
-        }
-        match crate::contact::first_contact(model, Poses(self.poses)) {
-            Some((a, b, gap)) => Err(Error::new(Status::Contact).at(a).with(b).of("gap", gap.to_f64())),
-            None => Ok(()),
-        }
-    }
-
-    /// Writes the walls' poses, once.
-    pub(crate) fn place_walls(&mut self, model: &Model<'_, R>) {
-        for (i, b) in model.boundaries.iter().enumerate().filter(|(_, b)| b.link.is_none()) {
-            put_pose(self.poses, i, &b.pose);
-        }
-    }
-
-    /// Jacobian columns of the free coordinates and, if prescribed coordinates move, the motion they alone make.
-    pub(crate) fn fill_jacobian(&mut self, model: &Model<'_, R>) {
-        let rows = 3 * model.links.len();
-        let unit = &mut *self.generalized;
-        for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
-            jacobian_column(model, i, self.s, self.q, unit, part_mut(self.jacobian, c.free * rows, rows));
-        }
-        if model.head.prescribed_moves {
-            for ((u, ds), c) in unit.iter_mut().zip(self.ds.iter()).zip(model.coordinates) {
-                *u = if c.control == Control::Prescribed { *ds } else { R::zero() };
-            }
-            let at = model.head.plan.free_coordinates * rows;
-            velocities(model, self.s, unit, self.q, part_mut(self.jacobian, at, rows));
-        }
-    }
-
-    /// Solves the boundary system for the columns and forms their momenta (world directions, with density), M_h C.
-    pub(crate) fn solve_fluid(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
-        let rows = 3 * model.links.len();
-        let density = model.head.fluid_density;
-        self.momenta.fill(R::zero());
-        if model.head.plan.formulation == Formulation::Kirchhoff {
-            for (c, k) in self.jacobian.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1))) {
-                lone_momentum(model, Poses(self.poses), c, k);
-            }
-            return Ok(());
-        }
-        if model.head.plan.unknowns == 0 {
-            return Ok(());
-        }
-        let poses = Poses(self.poses);
-        for (c, m) in self.jacobian.chunks_exact(rows.max(1)).zip(self.moving.chunks_exact_mut(rows.max(1))) {
-            to_link_frames(model, poses, c, m);
-        }
-        counters.factorizations += 1;
-        let mut system = system!(self);
-        system.solve(model, poses, self.moving, self.zx, self.zy)?;
-        let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
-        for (k, (m, p)) in columns.enumerate() {
-            copy(self.solution, system.column(k));
-            add_interior_potential(model, m, R::one(), self.solution);
-            flux_moments(model, self.solution, p);
-            to_world(model, poses, density, p);
-        }
-        Ok(())
-    }
-
-    /// Reduced mass matrix N_pᵀ M N_p, factorized.
-    fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
-        let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
-        for k in 0..n {
-            let column = part(self.jacobian, k * rows, rows);
-            for j in 0..=k {
-                let other = part(self.jacobian, j * rows, rows);
-                let fluid = inner(other, part(self.momenta, k * rows, rows))
-                    + inner(column, part(self.momenta, j * rows, rows));
-                let mut sum = fluid * R::HALF;
-                for (i, l) in model.links.iter().enumerate() {
-                    let (a, b) = (twist_of(column, i), twist_of(other, i));
-                    sum += l.mass * crate::scalar::dot(a.linear, b.linear) + l.inertia * a.angular * b.angular;
-                }
-                put(self.reduced, k * n + j, sum);
-                put(self.reduced, j * n + k, sum);
-            }
-        }
-        factor(part_mut(self.reduced, 0, n * n), n, n, self.reduced_pivots)?;
-        Ok(())
-    }
-
-    /// Solves the reduced system in place: the right-hand side is in the last column of `reduced`.
-    fn solve_reduced(&mut self, n: usize) {
-        let Some((lu, rhs)) = self.reduced.split_at_mut_checked(n * n) else { return };
-        Factors { lu, ld: n, pivots: self.reduced_pivots }.solve(part_mut(rhs, 0, n));
-    }
-
-    /// The density of the motion itself, its adjoint, and its momentum (symmetrized, world directions, with density).
-    pub(crate) fn solve_motion(&mut self, model: &Model<'_, R>) {
-        let rows = 3 * model.links.len();
-        if model.head.plan.formulation == Formulation::Kirchhoff {
-            lone_momentum(model, Poses(self.poses), self.qd, self.momentum);
-            return;
-        }
-        if model.head.plan.unknowns == 0 {
-            self.momentum.fill(R::zero());
-            return;
-        }
-        let poses = Poses(self.poses);
-        to_link_frames(model, poses, self.qd, self.v);
-        let free = model.head.plan.free_coordinates;
-        let rates = model.coordinates.iter().zip(self.ds.iter()).filter(|(c, _)| c.control != Control::Prescribed);
-        let last = core::iter::repeat_n(R::one(), (self.jacobian.len() / rows.max(1)).saturating_sub(free));
-        let mut system = system!(self);
-        system.combine(rates.map(|(_, ds)| *ds).chain(last), self.density);
-        fill_flux(model, self.v, self.adjoint);
-        // ½ Xᵀ B v now, −Xᵀ λ after the solve: M_hᵀ v = Xᵀ (B v − 2 λ).
-        self.momentum.fill(R::zero());
-        add_potential_moments(model, self.adjoint, R::HALF, self.momentum);
-        system.factors().solve_transposed(self.adjoint);
-        add_potential_moments(model, self.adjoint, -R::one(), self.momentum);
-        copy(self.solution, self.density);
-        add_interior_potential(model, self.v, R::one(), self.solution);
-        flux_moments(model, self.solution, self.spare);
-        axpy(self.momentum, R::HALF, self.spare);
-        to_world(model, poses, model.head.fluid_density, self.momentum);
-    }
-
     /// One pass over the pairs: both rates and the gradient of the motion (exact-gradient formula).
     pub(crate) fn pass(&mut self, model: &Model<'_, R>) {
         self.gradient.fill(R::zero());
@@ -441,7 +182,7 @@ impl<R: Real> Work<'_, R> {
     /// Accelerations, once velocities are known.
     pub(crate) fn accelerate(&mut self, model: &Model<'_, R>, t: R) -> Result<()> {
         let n = model.head.plan.free_coordinates;
-        self.solve_motion(model);
+        self.solve_motion(model, true);
         self.pass(model);
         // a + N_u ü
         for (dds, _) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
@@ -480,9 +221,10 @@ impl<R: Real> Work<'_, R> {
         project(model, self.s, self.q, self.force, self.generalized);
     }
 
-    /// Christoffel force plus fluid inertia of the accelerations in `qdd`, into `force`.
-    pub(crate) fn force_of_accelerations(&mut self, model: &Model<'_, R>) {
-        self.solve_motion(model);
+    /// Christoffel force of the velocities in `qd` into `force`.
+    pub(crate) fn christoffel_force(&mut self, model: &Model<'_, R>) {
+        self.qdd.fill(R::zero());
+        self.solve_motion(model, false);
         self.pass(model);
         self.fluid_force(model, Inertia::Accelerations);
     }
@@ -554,22 +296,6 @@ fn add_body_inertia<R: Real>(model: &Model<'_, R>, w: &[R], force: &mut [R]) {
         let (a, f) = (twist_of(w, i), twist_of(force, i));
         put_three(force, i, f.linear + a.linear * l.mass, f.angular + a.angular * l.inertia);
     }
-}
-
-/// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
-fn lone_momentum<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, v: &[R], out: &mut [R]) {
-    let turn = poses.get(0);
-    let v = twist_of(v, 0);
-    let b = turn.unturned(v.linear);
-    let m = &model.head.lone_added_mass;
-    let row = |r: usize| {
-        m.get(r)
-            .zip(m.get(r + 3))
-            .zip(m.get(r + 6))
-            .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
-    };
-    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * model.head.fluid_density;
-    put_three(out, 0, linear, row(2) * model.head.fluid_density);
 }
 
 /// −G q̇ of a lone body: its circulation impulse turns with it.

@@ -1,8 +1,8 @@
 //! LU factorization with partial pivoting over the caller's memory, and the solves that follow.
 //!
-//! Column-major storage with leading dimension `ld`. Row exchanges are applied panel by panel (the columns to
-//! the left of a panel are not exchanged), so right-hand sides appended behind the matrix ride along, and the
-//! separate solves repeat the exchanges panel by panel. Cost: 2n³/3 for [`factor`], 2n² for each solve.
+//! Column-major storage with leading dimension `ld`. Right-hand sides appended behind the matrix ride along with the
+//! elimination. Cost: 2n³/3 for [`factor`], 2n² for each solve. With the feature `faer` large matrices are factorized
+//! by faer.
 
 use crate::scalar::Real;
 use crate::status::{Result, Status};
@@ -29,6 +29,9 @@ pub struct Factors<'a, R> {
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
 pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
+    if let Some(ratio) = R::factor_large(a, ld, n, pivots) {
+        return ratio;
+    }
     let mut smallest = R::MAX;
     let mut largest = R::zero();
     let mut k = 0;
@@ -37,13 +40,16 @@ pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Re
         let Some((head, tail)) = a.split_at_mut_checked((k + width) * ld) else {
             return Err(Status::Internal.into());
         };
-        let panel = part_mut(head, k * ld, width * ld);
+        let (left, panel) = head.split_at_mut_checked(k * ld).ok_or(Status::Internal)?;
         let (low, high) = factor_panel(panel, ld, n, k, width, pivots)?;
+        for column in left.chunks_exact_mut(ld.max(1)) {
+            exchange_all(column, k, part(pivots, k, width));
+        }
         smallest = smallest.min(low);
         largest = largest.max(high);
         let panel = &*panel;
         let swaps = part(pivots, k, width);
-        let mut pairs = tail.chunks_exact_mut(2 * ld.max(1));
+        let mut pairs = tail.chunks_exact_mut(ld.saturating_mul(2).max(1));
         for pair in pairs.by_ref() {
             let (first, second) = pair.split_at_mut_checked(ld).unwrap_or((&mut [], &mut []));
             let x = eliminate_panel(panel, ld, k, width, swaps, first);
@@ -56,6 +62,11 @@ pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Re
         }
         k += width;
     }
+    check_pivots(n, smallest, largest)
+}
+
+/// Ratio of the extreme pivots; refuses a matrix that is singular to rounding.
+pub(crate) fn check_pivots<R: Real>(n: usize, smallest: R, largest: R) -> Result<R> {
     let ratio = smallest / largest;
     if n > 0 && (ratio <= R::EPSILON * R::HALF || !ratio.is_finite()) {
         return Err(Status::Singular.into());
@@ -118,6 +129,14 @@ fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
     }
 }
 
+/// Applies the exchanges of steps `k`, `k + 1`, … in order.
+#[inline]
+fn exchange_all<R: Real>(column: &mut [R], k: usize, swaps: &[R]) {
+    for (p, row) in swaps.iter().enumerate() {
+        exchange(column, k + p, row_of(*row));
+    }
+}
+
 #[inline]
 fn row_of<R: Real>(pivot: R) -> usize {
     pivot.to_f64() as usize
@@ -133,9 +152,7 @@ fn eliminate_panel<R: Real>(
     swaps: &[R],
     column: &mut [R],
 ) -> [R; PANEL] {
-    for (p, row) in swaps.iter().enumerate() {
-        exchange(column, k + p, row_of(*row));
-    }
+    exchange_all(column, k, swaps);
     let mut x = [R::zero(); PANEL];
     for (p, (xp, l)) in x.iter_mut().zip(panel.chunks_exact(ld.max(1))).enumerate().take(width) {
         *xp = at(column, k + p);
@@ -221,16 +238,22 @@ impl<R: Real> Factors<'_, R> {
 
     /// Solves A x = b in place.
     pub fn solve(&self, b: &mut [R]) {
+        self.forward(b);
+        self.back_substitute(b);
+    }
+
+    /// b ← L⁻¹ P b: what happens to right-hand sides that ride along.
+    pub(crate) fn forward(&self, b: &mut [R]) {
         let n = self.order();
+        exchange_all(b, 0, self.pivots);
         let mut k = 0;
         while k < n {
             let width = PANEL.min(n - k);
             let panel = self.panel(k, width);
-            let x = eliminate_panel(panel, self.ld, k, width, part(self.pivots, k, width), b);
+            let x = eliminate_panel(panel, self.ld, k, width, &[], b);
             subtract_columns(panel, self.ld, k + width, n, width, &x, b);
             k += width;
         }
-        self.back_substitute(b);
     }
 
     /// Solves U x = b in place.
@@ -242,7 +265,8 @@ impl<R: Real> Factors<'_, R> {
             let width = PANEL.min(n - k);
             let panel = self.panel(k, width);
             let mut x = [R::zero(); PANEL];
-            for (p, u) in panel.chunks_exact(self.ld.max(1)).enumerate().rev() {
+            for p in (0..width).rev() {
+                let u = part(panel, p * self.ld, self.ld);
                 let value = at(b, k + p) / at(u, k + p);
                 put(b, k + p, value);
                 if let Some(x) = x.get_mut(p) {
@@ -263,15 +287,13 @@ impl<R: Real> Factors<'_, R> {
             let value = (at(b, c) - inner(part(u, 0, c), part(b, 0, c))) / at(u, c);
             put(b, c, value);
         }
-        for (c, l) in self.lu.chunks_exact(self.ld.max(1)).enumerate().take(n).rev() {
-            let below = n - c - 1;
+        for c in (0..n).rev() {
+            let (l, below) = (part(self.lu, c * self.ld, n), n - c - 1);
             let value = at(b, c) - inner(part(l, c + 1, below), part(b, c + 1, below));
             put(b, c, value);
-            if c % PANEL == 0 {
-                for (p, row) in part(self.pivots, c, PANEL.min(n - c)).iter().enumerate().rev() {
-                    exchange(b, c + p, row_of(*row));
-                }
-            }
+        }
+        for (c, row) in self.pivots.iter().enumerate().rev() {
+            exchange(b, c, row_of(*row));
         }
     }
 }

@@ -4,25 +4,13 @@
 //! Order of boundaries (and of unknowns): tank, obstacles, then the links of all bodies.
 
 use crate::boundary::{BoundaryRecord, Nodes};
+pub use crate::plan::Formulation;
 use crate::plan::Plan;
 use crate::scalar::{Complex, Real};
 use crate::scene::{ForceFormula, Repulsion};
 use crate::signal::SignalRecord;
 use crate::status::{Place, Status};
 use crate::workspace::part;
-
-/// How the equations of motion are integrated.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Formulation {
-    /// State (p, ṗ): the general case.
-    #[default]
-    Velocity,
-    /// A lone rigid body: constant added mass in its own frame, no boundary system per step.
-    Kirchhoff,
-    /// A lone body with prescribed joints and no outer force: the impulse is constant, the state is the pose of
-    /// its first link, first order in time.
-    LockedMomentum,
-}
 
 /// One rigid link.
 #[derive(Clone, Copy, Debug, Default)]

@@ -44,6 +44,13 @@ pub(crate) fn targets<'a, R: Real>(
     nodes.points().map(move |x| shift + turn * x)
 }
 
+/// Writes the nodes of one boundary in another's frame.
+pub(crate) fn fill_targets<R: Real>(nodes: &Nodes<'_, R>, pose: Pose<R>, source: Pose<R>, zx: &mut [R], zy: &mut [R]) {
+    for ((x, y), z) in zx.iter_mut().zip(zy).zip(targets(nodes, pose, source)) {
+        (*x, *y) = (z.re, z.im);
+    }
+}
+
 /// Fills the constant block of the walls (and of Re G) in the store.
 pub(crate) fn fill_walls<R: Real>(
     walls: &[BoundaryRecord<R>],
@@ -99,10 +106,8 @@ pub(crate) fn assemble<R: Real>(
         for (i, target, points) in
             model.each_boundary().filter(|(i, t, _)| *i != j && (t.link.is_some() || source.link.is_some()))
         {
-            let x = part_mut(zx, target.first, target.nodes).iter_mut().zip(part_mut(zy, target.first, target.nodes));
-            for ((x, y), z) in x.zip(targets(&points, poses.get(i), poses.get(j))) {
-                (*x, *y) = (z.re, z.im);
-            }
+            let (zx, zy) = (part_mut(zx, target.first, target.nodes), part_mut(zy, target.first, target.nodes));
+            fill_targets(&points, poses.get(i), poses.get(j), zx, zy);
         }
         let factor = nodes.step * source.sign / R::PI;
         // Rows that come ready: the walls' for a wall, its own for a link.

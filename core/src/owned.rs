@@ -4,7 +4,7 @@ use crate::boundary::BoundaryRecord;
 use crate::compile::ModelMemory;
 use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scalar::Real;
-use crate::scene::Scene;
+use crate::scene::Description;
 use crate::sim::{Method, Sim, SimHead};
 use crate::status::Result;
 use alloc::{sync::Arc, vec, vec::Vec};
@@ -24,7 +24,7 @@ impl<R: Real> ModelBuf<R> {
     ///
     /// # Errors
     /// As [`Model::init`].
-    pub fn new(scene: &Scene<'_, R>) -> Result<Self> {
+    pub fn new(scene: &impl Description<R>) -> Result<Self> {
         let need = Model::requirement(scene)?;
         let mut links = vec![LinkRecord::default(); need.links];
         let mut coordinates = vec![CoordinateRecord::default(); need.coordinates];

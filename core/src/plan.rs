@@ -1,7 +1,19 @@
 //! What a model computes and what that costs: explicit, printable, and derived from the scene alone.
 
-use crate::model::Formulation;
 use core::fmt;
+
+/// How the equations of motion are integrated.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Formulation {
+    /// State (p, ṗ): the general case.
+    #[default]
+    Velocity,
+    /// A lone rigid body: constant added mass in its own frame, no boundary system per step.
+    Kirchhoff,
+    /// A lone body with prescribed joints and no outer force: the impulse is constant, the state is the pose of
+    /// its first link, first order in time.
+    LockedMomentum,
+}
 
 /// The plan of a model. Counts are per evaluation of the accelerations.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]

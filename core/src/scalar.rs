@@ -105,6 +105,17 @@ pub trait Real:
     fn is_nan(self) -> bool {
         self != self
     }
+    /// Factorizes a large matrix by an optional package; `None` when there is none for this size.
+    #[doc(hidden)]
+    #[inline]
+    fn factor_large(
+        _a: &mut [Self],
+        _ld: usize,
+        _n: usize,
+        _pivots: &mut [Self],
+    ) -> Option<crate::status::Result<Self>> {
+        None
+    }
     /// Nearest integer.
     #[inline]
     fn round(self) -> Self {
@@ -175,6 +186,15 @@ macro_rules! real {
             #[inline]
             fn floor(self) -> Self {
                 libm::$floor(self)
+            }
+            #[cfg(feature = "faer")]
+            fn factor_large(
+                a: &mut [Self],
+                ld: usize,
+                n: usize,
+                pivots: &mut [Self],
+            ) -> Option<crate::status::Result<Self>> {
+                crate::lu_faer::factor(a, ld, n, pivots)
             }
             #[inline]
             fn abs(self) -> Self {

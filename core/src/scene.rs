@@ -29,6 +29,54 @@ pub struct Scene<'a, R> {
     pub shortcuts: bool,
 }
 
+/// A scene as set-up reads it: item by item, by value. [`Scene`] is one; an interface to another language can be another,
+/// without converting its arrays first. Counts and items must not change while a model is made of them.
+pub trait Description<R: Real> {
+    /// The scalar settings; walls and bodies of the value are not read.
+    fn settings(&self) -> Scene<'_, R>;
+    /// The tank.
+    fn tank(&self) -> Option<Wall<'_, R>>;
+    /// Number of obstacles.
+    fn obstacle_count(&self) -> usize;
+    /// Obstacle `i`; `None` from the count on.
+    fn obstacle(&self, i: usize) -> Option<Wall<'_, R>>;
+    /// Number of bodies.
+    fn body_count(&self) -> usize;
+    /// Body `b`; the value's links are not read. `None` from the count on.
+    fn body(&self, b: usize) -> Option<Body<'_, R>>;
+    /// Number of links of body `b`.
+    fn link_count(&self, b: usize) -> usize;
+    /// Link `l` of body `b`; `None` from the count on.
+    fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>>;
+}
+
+impl<R: Real> Description<R> for Scene<'_, R> {
+    fn settings(&self) -> Scene<'_, R> {
+        *self
+    }
+    fn tank(&self) -> Option<Wall<'_, R>> {
+        self.tank
+    }
+    fn obstacle_count(&self) -> usize {
+        self.obstacles.len()
+    }
+    fn obstacle(&self, i: usize) -> Option<Wall<'_, R>> {
+        self.obstacles.get(i).copied()
+    }
+    fn body_count(&self) -> usize {
+        self.bodies.len()
+    }
+    fn body(&self, b: usize) -> Option<Body<'_, R>> {
+        self.bodies.get(b).copied()
+    }
+    fn link_count(&self, b: usize) -> usize {
+        self.bodies.get(b).map_or(0, |body| body.links.len())
+    }
+    fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
+        self.bodies.get(b)?.links.get(l).copied()
+    }
+}
+
 /// V = ε Σ ∬ |x − x'|^(−α) ds ds' over pairs of boundaries of which at least one moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Repulsion<R> {
@@ -199,6 +247,7 @@ pub enum Signal<'a, R> {
 
 /// One harmonic term: offset + amplitude sin(frequency t + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Harmonic<R> {
     /// Amplitude.
     pub amplitude: R,

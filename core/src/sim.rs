@@ -1,14 +1,14 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 
-use crate::contact::{first_misplaced, set_anchor, swept_contact};
-use crate::dynamics::{Counters, Dims, Work};
+use crate::contact::{first_misplaced, swept_contact};
 use crate::integrate::{Abm4, Adams, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};
+use crate::work::{Counters, Dims, Work};
 use crate::workspace::{at, buffers, copy, part, put};
 
 /// Integrator of a simulation.
@@ -55,20 +55,20 @@ impl SimRequirement {
 /// Everything of a simulation that has a fixed size.
 #[derive(Clone, Copy, Debug)]
 pub struct SimHead<R> {
-    method: Method<R>,
+    pub(crate) method: Method<R>,
     /// Time of the state shown.
     pub(crate) time: R,
     /// Time of the last full step of a fixed-step method, and how many steps led there from `base`.
-    base: R,
-    step_count: u64,
-    adams: Adams<R>,
-    abm4: Abm4<R>,
+    pub(crate) base: R,
+    pub(crate) step_count: u64,
+    pub(crate) adams: Adams<R>,
+    pub(crate) abm4: Abm4<R>,
     pub(crate) impulse: [R; 3],
     pub(crate) counters: Counters,
     /// The buffers hold an evaluation of the state shown.
     pub(crate) fresh: bool,
     /// A variable-step integrator holds the state shown or a later one.
-    started: bool,
+    pub(crate) started: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -121,14 +121,14 @@ pub struct Sim<'a, R> {
 }
 
 /// The equations of motion as an integrator sees them.
-struct Motion<'s, 'a, R> {
-    model: Model<'a, R>,
-    work: &'s mut Work<'a, R>,
-    impulse: [R; 3],
+pub(crate) struct Motion<'s, 'a, R> {
+    pub(crate) model: Model<'a, R>,
+    pub(crate) work: &'s mut Work<'a, R>,
+    pub(crate) impulse: [R; 3],
     /// Placements at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
     /// then no body may lie inside another.
-    anchor: Option<&'s [R]>,
-    counters: &'s mut Counters,
+    pub(crate) anchor: Option<&'s [R]>,
+    pub(crate) counters: &'s mut Counters,
 }
 
 impl<R: Real> Motion<'_, '_, R> {
@@ -193,6 +193,8 @@ macro_rules! motion {
         }
     };
 }
+
+pub(crate) use motion;
 
 impl<'a, R: Real> Sim<'a, R> {
     /// Memory needed for a simulation of a model.
@@ -303,7 +305,7 @@ impl<'a, R: Real> Sim<'a, R> {
     pub fn velocities(&self) -> &[R] {
         self.state.velocities
     }
-    /// Counts since the start.
+    /// Counts since the start, of what stepping and [`Sim::rhs`] did (diagnostics are not counted).
     pub fn counters(&self) -> Counters {
         let mut c = self.head.counters;
         if let Method::Adams { .. } = self.head.method {
@@ -380,226 +382,18 @@ impl<'a, R: Real> Sim<'a, R> {
     /// `Length`, `NonFiniteState`, `Contact`, `Singular`.
     pub fn rhs(&mut self, t: R, y: &[R], ydot: &mut [R]) -> Result<()> {
         let n = self.state.y.len();
-        if y.len() != n || ydot.len() != n {
-            return Err(Error::new(Status::Length).of("length", y.len() as f64));
+        for given in [y.len(), ydot.len()] {
+            if given != n {
+                return Err(Error::new(Status::Length).of("length", given as f64));
+            }
         }
         self.head.fresh = false;
-        // The user's integrator may jump: only contact at the state itself counts.
-        let mut motion = Motion {
-            model: self.model,
-            work: &mut self.work,
-            impulse: self.head.impulse,
-            anchor: None,
-            counters: &mut self.head.counters,
-        };
-        let outcome = motion.rhs(t, y, ydot);
-        if outcome.is_err() {
+        // The user's integrator may jump: no state is asked where it came from.
+        let result = Motion { anchor: None, ..motion!(self) }.rhs(t, y, ydot);
+        if result.is_err() {
             ydot.fill(R::zero());
         }
-        outcome
-    }
-
-    /// One step of the method (for `Adams` one step of its own choice).
-    ///
-    /// # Errors
-    /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`; time and state are then as before.
-    pub fn step(&mut self) -> Result<()> {
-        match self.head.method {
-            Method::Rk4 { step } | Method::Abm4 { step } => {
-                self.fixed_step(step, true)?;
-            }
-            Method::Adams { .. } => {
-                self.adams_step(R::MAX)?;
-                self.show_adams(self.head.adams.time())?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Advances to exactly `t_end`; nothing is evaluated beyond it. A fixed-step method shortens its last step.
-    ///
-    /// # Errors
-    /// As [`Sim::step`]; the state shown is then that of the last step that succeeded.
-    pub fn advance(&mut self, t_end: R) -> Result<()> {
-        self.advance_dense(t_end, t_end)
-    }
-
-    /// Shows the state at `t_out`; the integrator may run ahead, but not beyond `t_stop`. Cheaper than [`Sim::advance`] when
-    /// output is wanted at many times: a variable-step method keeps its steps and interpolates.
-    ///
-    /// # Errors
-    /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
-    pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
-        if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.head.time) {
-            return Err(Error::new(Status::BadStep).of("t", t_out.to_f64()));
-        }
-        match self.head.method {
-            Method::Adams { .. } => {
-                while !self.head.started || self.head.adams.time() < t_out {
-                    if let Err(e) = self.adams_step(t_stop) {
-                        if self.head.started && self.head.adams.time() > self.head.time {
-                            self.show_adams(self.head.adams.time())?;
-                        }
-                        return Err(e);
-                    }
-                    if t_out == self.head.time {
-                        break;
-                    }
-                }
-                self.show_adams(t_out)
-            }
-            Method::Rk4 { step } | Method::Abm4 { step } => {
-                // Rounding of the time must not make a step of almost no length.
-                let slack = step * R::lit(1e-6).max(R::lit(8.0) * R::EPSILON);
-                while self.head.time + step <= t_out + slack {
-                    self.fixed_step(step, true)?;
-                }
-                let rest = t_out - self.head.time;
-                if rest > slack {
-                    self.fixed_step(rest, false)?;
-                }
-                if rest.abs() <= slack || rest > slack {
-                    self.head.time = t_out;
-                }
-                Ok(())
-            }
-        }
-    }
-
-    /// Forgets the integrator's past, as after a jump of the drives.
-    pub fn restart(&mut self) {
-        self.head.abm4.reset();
-        self.head.started = false;
-        self.head.base = self.head.time;
-        self.head.step_count = 0;
-    }
-
-    /// One step of a fixed-step method; `regular` steps keep the multistep history.
-    fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
-        copy(self.state.saved, self.state.y);
-        let (t, abm4) = (self.head.time, self.head.abm4);
-        let use_abm4 = regular && matches!(self.head.method, Method::Abm4 { .. });
-        self.head.fresh = false;
-        let mut motion = motion!(self);
-        let stepped = if use_abm4 {
-            self.head.abm4.step(&mut motion, t, h, self.state.y, self.state.integrator)
-        } else {
-            Rk4::new().step(&mut motion, t, h, self.state.y, self.state.integrator)
-        };
-        let next = if regular { self.head.base + R::count(self.head.step_count as usize + 1) * h } else { t + h };
-        let arrived = stepped.and_then(|()| {
-            self.head.time = next;
-            self.show_checked()
-        });
-        if let Err(e) = arrived {
-            copy(self.state.y, self.state.saved);
-            self.head.time = t;
-            self.head.abm4 = abm4;
-            self.head.abm4.reset();
-            self.head.counters.rejected += 1;
-            self.show()?;
-            return Err(e);
-        }
-        self.head.counters.steps += 1;
-        if regular {
-            self.head.step_count += 1;
-        } else {
-            self.head.abm4.reset();
-            (self.head.base, self.head.step_count) = (self.head.time, 0);
-        }
-        Ok(())
-    }
-
-    /// One accepted step of the variable-step method.
-    fn adams_step(&mut self, t_stop: R) -> Result<()> {
-        self.head.fresh = false;
-        let mut adams = self.head.adams;
-        if !self.head.started {
-            adams.start(self.head.time, self.state.y, self.state.integrator)?;
-            self.head.started = true;
-            // Trial states are measured from the poses of the state shown; the buffers may hold others.
-            let (p, _) = split_state(&self.model, self.state.y);
-            place_only(&self.model, &mut self.work, self.head.time, p);
-            set_anchor(self.state.anchor, self.work.poses, self.work.q);
-        }
-        let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
-        self.head.adams = adams;
-        outcome?;
-        let y = self.head.adams.state(self.state.integrator);
-        let (p, _) = split_state(&self.model, y);
-        place_only(&self.model, &mut self.work, self.head.adams.time(), p);
-        set_anchor(self.state.anchor, self.work.poses, self.work.q);
-        Ok(())
-    }
-
-    /// Shows the variable-step solution at `t`, within the last step.
-    fn show_adams(&mut self, t: R) -> Result<()> {
-        let adams = self.head.adams;
-        if t == adams.time() {
-            copy(self.state.y, adams.state(self.state.integrator));
-        } else {
-            adams.interpolate(t, self.state.integrator, self.state.y, self.state.rate)?;
-        }
-        self.head.time = t;
-        self.show()
-    }
-
-    /// Positions, velocities and joints of the state, after a check of where it leads.
-    fn show_checked(&mut self) -> Result<()> {
-        if !self.state.y.iter().all(|x| x.is_finite()) {
-            return Err(Status::NonFiniteState.into());
-        }
-        let (p, dp) = split_state(&self.model, self.state.y);
-        let zero = [R::zero(); 3];
-        // A lone swimmer's rates come later, from its impulse.
-        let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
-        self.work.place(&self.model, self.head.time, p, dp)?;
-        if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
-            return Err(Error::new(Status::Contact).at(a).with(b));
-        }
-        self.show()
-    }
-
-    /// Positions, velocities and joints of the state.
-    fn show(&mut self) -> Result<()> {
-        self.head.fresh = false;
-        let model = self.model;
-        if model.head.plan.formulation == Formulation::LockedMomentum {
-            // The rates follow from the impulse: one factorization.
-            self.refresh()?;
-        } else {
-            let (p, dp) = split_state(&model, self.state.y);
-            self.work.place(&model, self.head.time, p, dp)?;
-        }
-        copy(self.state.positions, self.work.q);
-        copy(self.state.velocities, self.work.qd);
-        for (k, (u, du)) in self.work.s.iter().zip(self.work.ds.iter()).enumerate() {
-            put(self.state.joints, 2 * k, *u);
-            put(self.state.joints, 2 * k + 1, *du);
-        }
-        if !self.head.started {
-            set_anchor(self.state.anchor, self.work.poses, self.work.q);
-        }
-        Ok(())
-    }
-
-    /// Makes the buffers hold an evaluation of the state shown, accelerations included.
-    pub(crate) fn refresh(&mut self) -> Result<()> {
-        if self.head.fresh {
-            return Ok(());
-        }
-        let model = self.model;
-        let (p, dp) = split_state(&model, self.state.y);
-        let zero = [R::zero(); 3];
-        let locked = model.head.plan.formulation == Formulation::LockedMomentum;
-        let dp = if locked { &zero } else { dp };
-        let mut counters = self.head.counters;
-        self.work.evaluate(&model, &self.head.impulse, self.head.time, p, dp, &mut counters)?;
-        if locked && !model.head.tracks_work {
-            self.work.accelerate(&model, self.head.time)?;
-        }
-        self.head.fresh = true;
-        Ok(())
+        result
     }
 
     /// u and u̇ of every joint, in the order of the links they move (`joint_count` each).
@@ -610,13 +404,6 @@ impl<'a, R: Real> Sim<'a, R> {
         }
     }
 }
-
-/// Poses of a state without any check.
-fn place_only<R: Real>(model: &Model<'_, R>, work: &mut Work<'_, R>, t: R, p: &[R]) {
-    crate::articulation::set_coordinates(model, t, p, &[], work.channels, work.s, work.ds, work.dds);
-    crate::articulation::place_links(model, work.s, work.q, work.poses);
-}
-
 impl<R: Real> Work<'_, R> {
     /// Total linear impulse and angular impulse about the origin of the motion (p, ṗ), from scratch.
     pub(crate) fn impulse_of_motion(&mut self, model: &Model<'_, R>, p: &[R], dp: &[R]) -> Result<[R; 3]> {

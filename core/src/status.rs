@@ -29,7 +29,7 @@ statuses! {
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";
     EmptyScene = -4, "the scene has no body";
-    NodeCount = -5, "a node count must be even and at least 8";
+    NodeCount = -5, "a node count must be even, at least 8 and at most 65536";
     BadShape = -6, "the shape's measures do not describe an outline";
     SelfIntersection = -7, "the outline crosses itself";
     BadParent = -8, "a link's parent must be an earlier link of the same body";

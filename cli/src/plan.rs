@@ -1,0 +1,17 @@
+//! `nekton plan`: what will be computed and what it costs.
+
+use std::path::Path;
+
+use crate::Ending;
+use crate::scene_file::Problem;
+use crate::setup::Setup;
+
+/// Prints the plan.
+pub fn plan(path: &Path) -> Result<Ending, Problem> {
+    let setup = Setup::open(path)?;
+    crate::say(&setup.model.view().plan().to_string());
+    for notice in setup.notices() {
+        crate::say(&format!("notice: {notice}"));
+    }
+    Ok(Ending::Complete)
+}

@@ -1,0 +1,115 @@
+//! What a run leaves behind, in the user's order of links.
+
+/// Everything the tables, plots and the report are made from.
+#[derive(Debug, Default)]
+pub struct Record {
+    /// Names `body.link`.
+    pub links: Vec<String>,
+    /// Names `body.link` of the links that hang on a joint.
+    pub joints: Vec<String>,
+    /// Outlines of the links in their own frames (origin = centre of mass).
+    pub outlines: Vec<Vec<[f64; 2]>>,
+    /// Outlines of the obstacles.
+    pub obstacles: Vec<Vec<[f64; 2]>>,
+    /// Outline of the tank.
+    pub tank: Option<Vec<[f64; 2]>>,
+    /// One row per output time.
+    pub rows: Vec<Row>,
+    /// Whether energy parts are there at all: gravity, repulsion, circulation.
+    pub terms: Terms,
+    /// Smallest gap met, when and between what.
+    pub smallest: Option<Nearest>,
+    /// Worst error indicators of space met: added mass, force.
+    pub resolution: [f64; 2],
+    /// Why the run stopped before its end.
+    pub stopped: Option<String>,
+    /// Remarks on the scene.
+    pub notices: Vec<String>,
+    /// The plan, as text.
+    pub plan: String,
+    /// Settings: name and value.
+    pub settings: Vec<(String, String)>,
+    /// Error indicators and counters: name and value.
+    pub figures: Vec<(String, String)>,
+}
+
+/// Parts of the energy that the scene has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Terms {
+    /// Fluid of density > 0.
+    pub fluid: bool,
+    /// Gravity.
+    pub gravity: bool,
+    /// Repulsion.
+    pub repulsion: bool,
+    /// Circulation.
+    pub circulation: bool,
+    /// Some joint slides, so its torque is a force.
+    pub slider: bool,
+}
+
+/// A gap.
+#[derive(Clone, Debug)]
+pub struct Nearest {
+    /// Distance.
+    pub distance: f64,
+    /// Time.
+    pub time: f64,
+    /// Between what; "" if unknown.
+    pub between: String,
+}
+
+/// The state and everything derived from it at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Time.
+    pub t: f64,
+    /// x, y, theta per link.
+    pub pose: Vec<[f64; 3]>,
+    /// Their rates.
+    pub velocity: Vec<[f64; 3]>,
+    /// Energies.
+    pub energy: Energies,
+    /// Linear impulse and angular impulse about the origin.
+    pub impulse: [f64; 3],
+    /// Smallest gap; infinite if nothing could touch.
+    pub gap: f64,
+    /// Torque and power per joint.
+    pub torque: Vec<[f64; 2]>,
+}
+
+/// Energies per unit depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// Kinetic, of the fluid.
+    pub kinetic_fluid: f64,
+    /// Kinetic, of the bodies.
+    pub kinetic_bodies: f64,
+    /// Of gravity and buoyancy.
+    pub buoyancy: f64,
+    /// Of repulsion.
+    pub repulsion: f64,
+    /// Of the circulatory flow.
+    pub circulation: f64,
+    /// Sum.
+    pub total: f64,
+    /// Done by the joints since the start.
+    pub work: f64,
+}
+
+impl Record {
+    /// An outline in the world at a pose.
+    pub fn placed(outline: &[[f64; 2]], pose: &[f64; 3]) -> Vec<[f64; 2]> {
+        let (s, c) = pose[2].sin_cos();
+        outline.iter().map(|p| [pose[0] + c * p[0] - s * p[1], pose[1] + s * p[0] + c * p[1]]).collect()
+    }
+
+    /// Largest change of (total energy - work of the joints) since the start, and the largest kinetic energy.
+    pub fn energy_drift(&self) -> Option<(f64, f64)> {
+        let balance = |r: &Row| r.energy.total - r.energy.work;
+        let first = balance(self.rows.first()?);
+        let drift = self.rows.iter().map(|r| (balance(r) - first).abs()).fold(0.0, f64::max);
+        let scale = self.rows.iter().map(|r| r.energy.kinetic_fluid + r.energy.kinetic_bodies).fold(0.0, f64::max);
+        Some((drift, scale))
+    }
+}

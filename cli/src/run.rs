@@ -1,0 +1,242 @@
+//! `nekton run`: simulate, show progress, write everything.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use nekton::status::{Error, Place};
+
+use crate::output::{Target, tables};
+use crate::plots;
+use crate::record::{Energies, Nearest, Record, Row, Terms};
+use crate::report;
+use crate::scene_file::{Integrator, Problem, RunDef};
+use crate::setup::Setup;
+use crate::{Ending, say};
+use nekton::{Model, Sim};
+
+/// Points with which an outline is drawn.
+const OUTLINE_POINTS: usize = 240;
+/// Length of the progress bar in its own units.
+const PROGRESS: u64 = 1000;
+
+/// Runs a scene and writes its results.
+pub fn run(path: &Path, folder: &Path) -> Result<Ending, Problem> {
+    let setup = Setup::open(path)?;
+    let plan = setup.scene.run()?.clone();
+    let target = Target::check(folder)?;
+    let mut sim = setup.simulate(plan.integrator)?;
+    let mut view = sim.view();
+    let clock = Instant::now();
+    let mut record = describe(&setup, &plan);
+    let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
+    figures(&view, &mut record);
+    let time = clock.elapsed();
+    record.stopped = stopped.as_ref().map(|(t, e)| format!("t = {t:.6} s: {}", setup.scene.describe(e)));
+
+    let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy());
+    let failed = |e: Box<dyn std::error::Error>| Problem::file(folder, format!("the plots could not be drawn: {e}"));
+    let plots = plots::all(&record).map_err(failed)?;
+    let page = report::page(&title, &record, &plots, setup.scene.text());
+    let mut files = tables(&record);
+    files.extend(plots.into_iter().map(|(name, svg)| (name, svg.into_bytes())));
+    files.push(("report.html", page.into_bytes()));
+    target.write(&files)?;
+    summary(&record, folder, time);
+    Ok(if record.stopped.is_some() { Ending::Stopped } else { Ending::Complete })
+}
+
+/// What is known before the first step.
+fn describe(setup: &Setup, run: &RunDef) -> Record {
+    let model = setup.model.view();
+    let plan = model.plan();
+    let labels = setup.scene.labels();
+    let outline = |place| outline(&model, place);
+    let places = setup.links.iter().filter_map(|core| model.link(*core)).map(|l| l.place);
+    let method = match run.integrator {
+        Integrator::Rk4 { step } => format!("rk4, step {step} s"),
+        Integrator::Abm4 { step } => format!("abm4, step {step} s"),
+        Integrator::Adams { tolerance } => format!("adams, relative and absolute tolerance {tolerance:e}"),
+    };
+    let nodes: Vec<String> = setup
+        .links
+        .iter()
+        .zip(&labels)
+        .filter_map(|(core, label)| Some(format!("{label} {}", model.link(*core)?.nodes)))
+        .collect();
+    Record {
+        joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
+        links: labels,
+        outlines: places.map(outline).collect(),
+        obstacles: (0..setup.scene.obstacles.len()).map(|k| outline(Place::Obstacle(k))).collect(),
+        tank: setup.scene.tank.as_ref().map(|_| outline(Place::Tank)),
+        terms: Terms {
+            fluid: plan.fluid,
+            gravity: plan.gravity,
+            repulsion: plan.repulsion,
+            circulation: plan.circulation,
+            slider: setup.scene.has_slider(),
+        },
+        notices: setup.notices(),
+        plan: plan.to_string(),
+        settings: vec![
+            ("scene file".into(), setup.scene.path().display().to_string()),
+            ("duration".into(), format!("{} s", run.duration)),
+            ("output interval".into(), format!("{} s", run.output_interval)),
+            ("integrator".into(), method),
+            ("nodes".into(), nodes.join(", ")),
+        ],
+        ..Record::default()
+    }
+}
+
+fn outline(model: &Model<'_, f64>, place: Place) -> Vec<[f64; 2]> {
+    let parameter = |k: usize| std::f64::consts::TAU * k as f64 / OUTLINE_POINTS as f64;
+    (0..OUTLINE_POINTS).filter_map(|k| model.outline_point(place, parameter(k))).collect()
+}
+
+/// Steps from output time to output time. An error at the very start is a bad scene; later it ends the run.
+fn integrate(
+    setup: &Setup,
+    run: &RunDef,
+    sim: &mut Sim<'_, f64>,
+    record: &mut Record,
+) -> Result<Option<(f64, Error)>, Problem> {
+    let bar = progress(run.duration);
+    let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
+    keep(sim, record, row);
+    let mut stopped = None;
+    // The tolerance keeps a last row that would follow the one before by rounding only from being written.
+    let rows = (run.duration / run.output_interval - 1e-9).ceil().max(1.0) as usize;
+    for k in 1..=rows {
+        let t = if k == rows { run.duration } else { k as f64 * run.output_interval };
+        let step = match run.integrator {
+            Integrator::Adams { .. } => sim.advance_dense(t, run.duration),
+            _ => sim.advance(t),
+        };
+        match step.and_then(|()| sample(setup, sim)) {
+            Ok(row) => {
+                show(&bar, run.duration, &row.0);
+                keep(sim, record, row);
+            }
+            Err(e) => {
+                stopped = Some((sim.time(), e));
+                break;
+            }
+        }
+    }
+    if stopped.is_some() {
+        // The last good state may lie between two output times.
+        let later = record.rows.last().is_some_and(|r| sim.time() > r.t);
+        if let (true, Ok(row)) = (later, sample(setup, sim)) {
+            keep(sim, record, row);
+        }
+        bar.abandon();
+    } else {
+        bar.finish_and_clear();
+    }
+    Ok(stopped)
+}
+
+/// On standard error, and only if that is a terminal.
+fn progress(duration: f64) -> ProgressBar {
+    let bar = ProgressBar::new(PROGRESS);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}   {elapsed}, {eta} to go") {
+        bar.set_style(style);
+    }
+    bar.set_message(format!("t = 0 of {duration} s"));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+fn show(bar: &ProgressBar, duration: f64, row: &Row) {
+    let gap = if row.gap.is_finite() { format!(", gap {:.3} m", row.gap) } else { String::new() };
+    bar.set_message(format!("t = {:.3} of {duration} s{gap}", row.t));
+    bar.set_position((PROGRESS as f64 * row.t / duration) as u64);
+}
+
+/// The present state and what follows from it, in the user's order; between what the smallest gap is.
+fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error> {
+    let triple = |values: &[f64], core: usize| -> [f64; 3] {
+        let mut out = [f64::NAN; 3];
+        out.iter_mut().zip(values.iter().skip(3 * core)).for_each(|(o, v)| *o = *v);
+        out
+    };
+    let energy = sim.energy()?;
+    let impulse = sim.impulse()?;
+    let mut torque = vec![0.0; setup.joints.len()];
+    let mut power = torque.clone();
+    if !torque.is_empty() {
+        sim.joint_torques(&mut torque, &mut power)?;
+    }
+    let gap = sim.gap();
+    let name = |place| setup.scene.name_of(place);
+    let between = gap.between.map_or(String::new(), |(a, b)| format!("{} and {}", name(a), name(b)));
+    let pick = |core: &usize| [torque.get(*core), power.get(*core)].map(|x| x.copied().unwrap_or(f64::NAN));
+    let row = Row {
+        t: sim.time(),
+        pose: setup.links.iter().map(|core| triple(sim.positions(), *core)).collect(),
+        velocity: setup.links.iter().map(|core| triple(sim.velocities(), *core)).collect(),
+        energy: Energies {
+            kinetic_fluid: energy.kinetic_fluid,
+            kinetic_bodies: energy.kinetic_bodies,
+            buoyancy: energy.buoyancy,
+            repulsion: energy.repulsion,
+            circulation: energy.circulation,
+            total: energy.total,
+            work: energy.work,
+        },
+        impulse,
+        gap: gap.distance,
+        torque: setup.joints.iter().map(|(core, _)| pick(core)).collect(),
+    };
+    Ok((row, between))
+}
+
+/// Adds a row. The error in space is largest where boundaries come closest: it is looked at whenever they do.
+fn keep(sim: &mut Sim<'_, f64>, record: &mut Record, (row, between): (Row, String)) {
+    let nearer = record.smallest.as_ref().is_none_or(|s| row.gap < s.distance);
+    if nearer && row.gap.is_finite() {
+        record.smallest = Some(Nearest { distance: row.gap, time: row.t, between });
+    }
+    if nearer && let Ok(r) = sim.resolution() {
+        record.resolution = [record.resolution[0].max(r.mass), record.resolution[1].max(r.force)];
+    }
+    record.rows.push(row);
+}
+
+/// Error indicators and counters at the end.
+fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
+    let mut add = |name: &str, value: String| record.figures.push((name.to_owned(), value));
+    if let Some(s) = &record.smallest {
+        let between = if s.between.is_empty() { String::new() } else { format!(", between {}", s.between) };
+        add("smallest gap at an output time", format!("{:.4} m at t = {:.4} s{between}", s.distance, s.time));
+    }
+    let [mass, force] = record.resolution;
+    add("worst relative error in space of the added mass", format!("{mass:.1e}"));
+    add("worst relative error in space of the force", format!("{force:.1e}"));
+    let c = sim.counters();
+    add("steps (rejected)", format!("{} ({})", c.steps, c.rejected));
+    add("evaluations", c.evaluations.to_string());
+    add("factorizations", c.factorizations.to_string());
+    if let Some((drift, scale)) = record.energy_drift() {
+        let text = format!("{drift:.1e} J/m (largest kinetic energy {scale:.3e} J/m)");
+        record.figures.insert(0, ("largest drift of total energy minus work".into(), text));
+    }
+}
+
+/// A few lines on standard output.
+fn summary(record: &Record, folder: &Path, time: Duration) {
+    let reached = record.rows.last().map_or(0.0, |r| r.t);
+    say(&format!("t = {reached:.6} s reached in {:.2} s; {} rows", time.as_secs_f64(), record.rows.len()));
+    for (name, value) in &record.figures {
+        say(&format!("  {name}: {value}"));
+    }
+    for notice in &record.notices {
+        say(&format!("  notice: {notice}"));
+    }
+    if let Some(why) = &record.stopped {
+        eprintln!("stopped at {why}; the results up to then are in {}", folder.display());
+    }
+    say(&format!("results: {}", folder.join("report.html").display()));
+}

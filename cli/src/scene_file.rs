@@ -1,0 +1,380 @@
+//! Scene files: TOML in, a checked description out, errors with file and line.
+
+mod body;
+mod reader;
+mod shape;
+mod signal;
+mod table;
+
+use std::path::Path;
+
+use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Repulsion, Scene, Wall};
+use nekton::status::{Error, Place, Status};
+
+pub use body::{BodyDef, LinkDef};
+pub use reader::Problem;
+use reader::{Item, Lines, Outcome, Section, Source};
+use shape::{ShapeDef, nodes};
+
+/// A scene with its own data and the lines on which everything stands.
+#[derive(Debug)]
+pub struct SceneFile {
+    source: Source,
+    fluid_density: f64,
+    /// Gravitational acceleration along −y.
+    pub gravity: f64,
+    repulsion: Option<Repulsion<f64>>,
+    circulation: CirculationModel,
+    /// The tank.
+    pub tank: Option<WallDef>,
+    /// Fixed obstacles.
+    pub obstacles: Vec<WallDef>,
+    /// Bodies.
+    pub bodies: Vec<BodyDef>,
+    force: ForceFormula,
+    shortcuts: bool,
+    run: Option<RunDef>,
+    lines: Lines,
+}
+
+/// A fixed boundary.
+#[derive(Clone, Debug)]
+pub struct WallDef {
+    shape: ShapeDef,
+    /// Where the outline's own origin lies.
+    pub position: [f64; 2],
+    /// Turn about the outline's own origin.
+    pub angle: f64,
+    nodes: usize,
+    circulation: f64,
+    lines: Lines,
+}
+
+/// What `nekton run` is to do.
+#[derive(Clone, Debug)]
+pub struct RunDef {
+    /// Simulated time.
+    pub duration: f64,
+    /// Time between rows of the tables.
+    pub output_interval: f64,
+    /// Method of integration.
+    pub integrator: Integrator,
+}
+
+/// Method of integration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Integrator {
+    /// Fixed step, order 4, one-step.
+    Rk4 {
+        /// Step.
+        step: f64,
+    },
+    /// Fixed step, order 4, multistep.
+    Abm4 {
+        /// Step.
+        step: f64,
+    },
+    /// Variable step, orders 1 to 12.
+    Adams {
+        /// Relative and absolute tolerance.
+        tolerance: f64,
+    },
+}
+
+/// Rows of the tables if the scene gives no `output_interval`.
+const DEFAULT_ROWS: f64 = 200.0;
+/// A run with more rows than this is a slip of the pen.
+const MOST_ROWS: f64 = 1e6;
+/// Tolerance if the scene gives none.
+const DEFAULT_TOLERANCE: f64 = 1e-9;
+
+const TOP: &[&str] = &["fluid", "repulsion", "circulation", "tank", "obstacle", "body", "run"];
+const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "shortcuts"];
+
+impl SceneFile {
+    /// Reads and checks a scene file.
+    pub fn open(path: &Path) -> Outcome<Self> {
+        let source = Source::open(path)?;
+        let mut scene = read(&source)?;
+        scene.source = source;
+        Ok(scene)
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &str {
+        self.source.text()
+    }
+
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.source.path
+    }
+
+    /// What `nekton run` is to do.
+    pub fn run(&self) -> Outcome<&RunDef> {
+        self.run.as_ref().ok_or_else(|| {
+            Problem::file(self.path(), "there is no [run] section").hint("add [run] with duration = … (s)")
+        })
+    }
+
+    /// Hands the scene in the core's own terms to a function.
+    pub fn with_core<T>(&self, f: impl FnOnce(&Scene<'_, f64>) -> T) -> T {
+        let links: Vec<Vec<Link<'_, f64>>> = self.bodies.iter().map(BodyDef::core_links).collect();
+        let bodies: Vec<Body<'_, f64>> = self
+            .bodies
+            .iter()
+            .zip(&links)
+            .map(|(b, links)| Body { pose: b.pose, velocity: b.velocity, root: b.core_root(), links })
+            .collect();
+        let obstacles: Vec<Wall<'_, f64>> = self.obstacles.iter().map(WallDef::core).collect();
+        f(&Scene {
+            fluid_density: self.fluid_density,
+            gravity: self.gravity,
+            repulsion: self.repulsion,
+            circulation: self.circulation,
+            tank: self.tank.as_ref().map(WallDef::core),
+            obstacles: &obstacles,
+            bodies: &bodies,
+            force: self.force,
+            shortcuts: self.shortcuts,
+        })
+    }
+
+    /// Names `body.link` in the user's order.
+    pub fn labels(&self) -> Vec<String> {
+        self.bodies.iter().flat_map(|b| b.links.iter().map(move |l| format!("{}.{}", b.name, l.name))).collect()
+    }
+
+    /// Whether some joint is a slider.
+    pub fn has_slider(&self) -> bool {
+        self.bodies.iter().flat_map(|b| &b.links).any(|l| l.joint.as_ref().is_some_and(|j| j.is_slider()))
+    }
+
+    /// For every link in the user's order, its index in the core's order.
+    pub fn core_order(&self) -> Vec<usize> {
+        let mut first = 0;
+        let mut order = Vec::new();
+        for b in &self.bodies {
+            order.extend((0..b.links.len()).map(|l| first + b.core_index(l)));
+            first += b.links.len();
+        }
+        order
+    }
+
+    /// A place of the core in the user's names.
+    pub fn name_of(&self, place: Place) -> String {
+        match place {
+            Place::Scene => "the scene".to_owned(),
+            Place::Tank => "the tank".to_owned(),
+            Place::Obstacle(k) => format!("obstacle {}", k + 1),
+            Place::Body(b) => match self.bodies.get(b) {
+                Some(body) => format!("body `{}`", body.name),
+                None => place.to_string(),
+            },
+            Place::Link(b, l) => match self.link(b, l) {
+                Some((body, link)) => format!("link `{}.{}`", body.name, link.name),
+                None => place.to_string(),
+            },
+            other => other.to_string(),
+        }
+    }
+
+    fn link(&self, body: usize, link: usize) -> Option<(&BodyDef, &LinkDef)> {
+        let body = self.bodies.get(body)?;
+        Some((body, body.links.get(*body.order.get(link)?)?))
+    }
+
+    fn lines_of(&self, place: Place) -> &Lines {
+        let found = match place {
+            Place::Tank => self.tank.as_ref().map(|t| &t.lines),
+            Place::Obstacle(k) => self.obstacles.get(k).map(|o| &o.lines),
+            Place::Body(b) => self.bodies.get(b).map(|b| &b.lines),
+            Place::Link(b, l) => self.link(b, l).map(|(_, l)| &l.lines),
+            _ => None,
+        };
+        found.unwrap_or(&self.lines)
+    }
+
+    /// An error of the core in the user's names.
+    pub fn describe(&self, error: &Error) -> String {
+        let mut text = match (error.place, error.other) {
+            (Place::Scene, None) => error.status.text().to_owned(),
+            (place, None) => format!("{}: {}", self.name_of(place), error.status.text()),
+            (place, Some(other)) => {
+                format!("{} and {}: {}", self.name_of(place), self.name_of(other), error.status.text())
+            }
+        };
+        // The gap of boundaries that touch is rounding only.
+        let touching = matches!(error.status, Status::Overlap | Status::Contact);
+        if !error.what.is_empty() && !touching {
+            let size = error.value.abs();
+            let value = if size == 0.0 || (1e-3..1e6).contains(&size) {
+                error.value.to_string()
+            } else {
+                format!("{:.3e}", error.value)
+            };
+            text = format!("{text} ({} = {value})", error.what);
+        }
+        text
+    }
+
+    /// Line of what puts a boundary where it is.
+    fn line_of_position(&self, place: Place) -> usize {
+        let lines = self.lines_of(place);
+        let body = match place {
+            Place::Link(b, _) => self.bodies.get(b).and_then(|b| b.lines.find(&["position"])),
+            _ => None,
+        };
+        lines.find(&["hinge", "slider", "position"]).or(body).or(lines.find(&["shape"])).unwrap_or(lines.own)
+    }
+
+    /// An error of the core as a complaint about the line that caused it.
+    pub fn problem(&self, error: &Error) -> Problem {
+        let lines = self.lines_of(error.place);
+        let keys: &[&str] = match error.status {
+            Status::BadShape | Status::SelfIntersection => &["shape"],
+            Status::NodeCount => &["nodes", "shape"],
+            Status::BadParent => &["parent"],
+            Status::Massless => &["density", "mass"],
+            Status::BadTable => &["table"],
+            Status::BadTolerance => &["tolerance", "integrator"],
+            Status::BadStep => &["step", "integrator"],
+            _ => &[],
+        };
+        let line = match error.status {
+            Status::Overlap | Status::OutsideTank | Status::Contact => self.line_of_position(error.place),
+            _ => match (lines.find(&[error.what]).or_else(|| lines.find(keys)), error.place) {
+                (Some(line), _) => line,
+                // No line stands for the whole scene.
+                (None, Place::Scene) => return Problem::file(self.path(), self.describe(error)),
+                (None, _) => lines.own,
+            },
+        };
+        let hint = match error.status {
+            Status::Overlap | Status::Contact => {
+                let other = error.other.map(|o| self.line_of_position(o));
+                other.map(|l| format!("move them apart; the other is placed on line {l}"))
+            }
+            Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
+            Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
+            Status::NodeCount => Some("there are more than the core takes".to_owned()),
+            Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
+            Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
+            Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
+            _ => None,
+        };
+        self.source.problem(line, self.describe(error)).maybe_hint(hint)
+    }
+}
+
+impl WallDef {
+    fn read(item: &Item<'_>, title: &str, allowed: &'static [&'static str]) -> Outcome<Self> {
+        let section = item.section(title, allowed)?;
+        let shape = ShapeDef::read(&section.need("shape")?)?;
+        Ok(WallDef {
+            position: section.or("position", [0.0; 2], Item::pair)?,
+            angle: section.or("angle", 0.0, Item::number)?,
+            nodes: nodes(section.get("nodes"), &shape)?,
+            circulation: section.or("circulation", 0.0, Item::number)?,
+            lines: section.lines(&[]),
+            shape,
+        })
+    }
+    fn core(&self) -> Wall<'_, f64> {
+        Wall {
+            shape: self.shape.core(),
+            position: self.position,
+            angle: self.angle,
+            nodes: self.nodes,
+            circulation: self.circulation,
+        }
+    }
+}
+
+fn read(source: &Source) -> Outcome<SceneFile> {
+    let document = source.parse()?;
+    let top = Section::new(source, 1, "the scene", document.get_ref(), TOP)?;
+    let (mut density, mut gravity) = (1.0, 0.0);
+    if let Some(fluid) = top.get("fluid") {
+        let fluid = fluid.section("[fluid]", &["density", "gravity"])?;
+        density = fluid.or("density", density, Item::not_negative)?;
+        gravity = fluid.or("gravity", gravity, Item::number)?;
+    }
+    let mut repulsion = None;
+    if let Some(item) = top.get("repulsion") {
+        let section = item.section("[repulsion]", &["alpha", "epsilon"])?;
+        repulsion = Some(Repulsion {
+            alpha: section.or("alpha", 4.0, Item::positive)?,
+            epsilon: section.or("epsilon", 0.01, Item::not_negative)?,
+        });
+    }
+    let mut circulation = CirculationModel::Full;
+    if let Some(item) = top.get("circulation") {
+        let section = item.section("[circulation]", &["model"])?;
+        if section.or("model", "full", |m| m.word(&["full", "paper"]))? == "paper" {
+            circulation = CirculationModel::Paper;
+        }
+    }
+    let tank = top.get("tank").map(|t| WallDef::read(&t, "[tank]", &["shape", "position", "angle", "nodes"]));
+    let mut obstacles = Vec::new();
+    for (k, item) in top.or("obstacle", Vec::new(), Item::list)?.iter().enumerate() {
+        let title = format!("[[obstacle]] {}", k + 1);
+        obstacles.push(WallDef::read(item, &title, &["shape", "position", "angle", "nodes", "circulation"])?);
+    }
+    let mut bodies: Vec<BodyDef> = Vec::new();
+    for (k, item) in top.or("body", Vec::new(), Item::list)?.iter().enumerate() {
+        let body = BodyDef::read(item, k + 1, &bodies)?;
+        bodies.push(body);
+    }
+    if bodies.is_empty() {
+        return Err(
+            Problem::file(&source.path, "the scene has no body").hint("add [[body]] with one or more [[body.link]]")
+        );
+    }
+    let run = top.get("run").map(|r| r.section("[run]", RUN)).transpose()?;
+    let mut force = ForceFormula::ExactGradient;
+    let mut shortcuts = true;
+    if let Some(section) = &run {
+        if section.or("force", "exact", |m| m.word(&["exact", "boundary"]))? == "boundary" {
+            force = ForceFormula::Boundary;
+        }
+        shortcuts = section.or("shortcuts", true, Item::flag)?;
+    }
+    Ok(SceneFile {
+        source: Source::empty(),
+        fluid_density: density,
+        gravity,
+        repulsion,
+        circulation,
+        tank: tank.transpose()?,
+        obstacles,
+        bodies,
+        force,
+        shortcuts,
+        run: run.as_ref().map(read_run).transpose()?,
+        lines: top.lines(&["body", "obstacle", "tank"]),
+    })
+}
+
+fn read_run(section: &Section<'_>) -> Outcome<RunDef> {
+    let duration = section.need("duration")?.positive()?;
+    let output_interval = section.or("output_interval", duration / DEFAULT_ROWS, Item::positive)?;
+    if duration / output_interval > MOST_ROWS {
+        let message = format!("makes {} rows", (duration / output_interval).round());
+        return Err(section.need("output_interval")?.problem(message).hint("make output_interval larger"));
+    }
+    let integrator = section.or("integrator", Integrator::Adams { tolerance: DEFAULT_TOLERANCE }, |item| {
+        let section = item.section("`integrator`", &["method", "tolerance", "step"])?;
+        let method = section.need("method")?.word(&["adams", "rk4", "abm4"])?;
+        let stranger = if method == "adams" { "step" } else { "tolerance" };
+        if let Some(item) = section.get(stranger) {
+            return Err(item.problem(format!("does not go with method `{method}`")));
+        }
+        Ok(match method {
+            "adams" => Integrator::Adams { tolerance: section.or("tolerance", DEFAULT_TOLERANCE, Item::positive)? },
+            "rk4" => Integrator::Rk4 { step: section.need("step")?.positive()? },
+            _ => Integrator::Abm4 { step: section.need("step")?.positive()? },
+        })
+    })?;
+    Ok(RunDef { duration, output_interval, integrator })
+}

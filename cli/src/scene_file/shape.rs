@@ -1,0 +1,107 @@
+//! Shapes as written in a scene file.
+
+use nekton::scene::Shape;
+
+use super::reader::{Item, Outcome};
+use super::table;
+
+/// A shape with its own points.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ShapeDef {
+    /// `ellipse = [a, b]`
+    Ellipse(f64, f64),
+    /// `star = { radius, amplitude, lobes }`
+    Star(f64, f64, usize),
+    /// `rectangle = [width, height], radius = r`
+    Rectangle(f64, f64, Option<f64>),
+    /// `polygon = [[x, y], …], radius = r`
+    Polygon(Vec<[f64; 2]>, Option<f64>),
+    /// `curve = [[x, y], …]` or a file
+    Curve(Vec<[f64; 2]>),
+}
+
+/// Nodes of a smooth outline if the scene does not say.
+pub const SMOOTH_NODES: usize = 64;
+/// Nodes of an outline with corners if the scene does not say.
+pub const CORNERED_NODES: usize = 128;
+
+impl ShapeDef {
+    /// Reads `shape = { … }`.
+    pub fn read(item: &Item<'_>) -> Outcome<Self> {
+        const KINDS: &[&str] = &["ellipse", "star", "rectangle", "polygon", "curve"];
+        let section = item.section("`shape`", &["ellipse", "star", "rectangle", "polygon", "curve", "radius"])?;
+        let (kind, value) = section.one_of(KINDS)?;
+        let cornered = matches!(kind, "rectangle" | "polygon");
+        let radius = match section.get("radius") {
+            Some(r) if !cornered => return Err(r.problem("is for rectangles and polygons only")),
+            Some(r) => Some(r.positive()?),
+            None => None,
+        };
+        let measures = || {
+            let pair = value.pair()?;
+            match pair.iter().find(|x| **x <= 0.0) {
+                Some(x) => Err(value.problem(format!("needs two lengths greater than 0, but one is {x}"))),
+                None => Ok(pair),
+            }
+        };
+        Ok(match kind {
+            "ellipse" => measures().map(|[a, b]| ShapeDef::Ellipse(a, b))?,
+            "rectangle" => measures().map(|[w, h]| ShapeDef::Rectangle(w, h, radius))?,
+            "star" => {
+                let star = value.section("`star`", &["radius", "amplitude", "lobes"])?;
+                let amplitude = star.need("amplitude")?;
+                let size = amplitude.number()?;
+                if size.abs() >= 1.0 {
+                    return Err(amplitude.problem(format!("must lie between -1 and 1, but is {size}")));
+                }
+                let lobes = star.need("lobes")?;
+                if lobes.count()? == 0 {
+                    return Err(lobes.problem("must be at least 1, but is 0"));
+                }
+                ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
+            }
+            _ => {
+                let points =
+                    if kind == "curve" && value.is_text() { table::outline(&value)? } else { value.points()? };
+                if points.len() < 3 {
+                    return Err(value.problem(format!("needs at least 3 points, but has {}", points.len())));
+                }
+                if kind == "curve" { ShapeDef::Curve(points) } else { ShapeDef::Polygon(points, radius) }
+            }
+        })
+    }
+
+    /// The core's description of it.
+    pub fn core(&self) -> Shape<'_, f64> {
+        match self {
+            ShapeDef::Ellipse(a, b) => Shape::Ellipse { a: *a, b: *b },
+            ShapeDef::Star(radius, amplitude, lobes) => {
+                Shape::Star { radius: *radius, amplitude: *amplitude, lobes: *lobes }
+            }
+            ShapeDef::Rectangle(width, height, radius) => {
+                Shape::Rectangle { width: *width, height: *height, radius: *radius }
+            }
+            ShapeDef::Polygon(vertices, radius) => Shape::Polygon { vertices, radius: *radius },
+            ShapeDef::Curve(points) => Shape::Curve { points },
+        }
+    }
+
+    /// Node count if the scene does not say.
+    pub fn default_nodes(&self) -> usize {
+        match self {
+            ShapeDef::Rectangle(..) | ShapeDef::Polygon(..) => CORNERED_NODES,
+            _ => SMOOTH_NODES,
+        }
+    }
+}
+
+/// Reads `nodes = n`: even and at least 8.
+pub fn nodes(item: Option<Item<'_>>, shape: &ShapeDef) -> Outcome<usize> {
+    let Some(item) = item else { return Ok(shape.default_nodes()) };
+    let n = item.count()?;
+    if n >= 8 && n.is_multiple_of(2) {
+        return Ok(n);
+    }
+    let near = (n + n % 2).max(8);
+    Err(item.problem(format!("must be even and at least 8, but is {n}")).hint(format!("try {near}")))
+}

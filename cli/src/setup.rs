@@ -1,0 +1,62 @@
+//! From a scene file to a model and a simulation of the core, with the orders of links and joints between them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use nekton::status::{Error, Place};
+
+use crate::scene_file::{Integrator, Problem, SceneFile};
+use nekton::{Method, ModelBuf, SimBuf};
+
+/// A scene with its model.
+pub struct Setup {
+    /// The scene as written.
+    pub scene: SceneFile,
+    /// The scene compiled.
+    pub model: Arc<ModelBuf<f64>>,
+    /// For every link in the user's order, its index in the core.
+    pub links: Vec<usize>,
+    /// For every joint in the user's order, its index in the core and the index of its link in the user's order.
+    pub joints: Vec<(usize, usize)>,
+}
+
+impl Setup {
+    /// Reads and compiles a scene.
+    pub fn open(path: &Path) -> Result<Self, Problem> {
+        let scene = SceneFile::open(path)?;
+        let model = scene.with_core(ModelBuf::new).map_err(|e| scene.problem(&e))?;
+        let view = model.view();
+        let links = scene.core_order();
+        let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();
+        let mut joints: Vec<(usize, usize)> = (0..view.joint_count())
+            .filter_map(|j| {
+                let place = view.joint(j)?.place;
+                let user = links.iter().position(|core| places.get(*core) == Some(&Some(place)))?;
+                Some((j, user))
+            })
+            .collect();
+        joints.sort_by_key(|(_, user)| *user);
+        Ok(Setup { model: Arc::new(model), links, joints, scene })
+    }
+
+    /// Starts a simulation.
+    pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
+        let method = match integrator {
+            Integrator::Rk4 { step } => Method::Rk4 { step },
+            Integrator::Abm4 { step } => Method::Abm4 { step },
+            Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance },
+        };
+        SimBuf::new(self.model.clone(), method).map_err(|e| self.problem(&e))
+    }
+
+    /// An error of the core as a complaint about the scene file.
+    pub fn problem(&self, error: &Error) -> Problem {
+        self.scene.problem(error)
+    }
+
+    /// What set-up mended.
+    pub fn notices(&self) -> Vec<String> {
+        let view = self.model.view();
+        view.notices().map(|(place, status)| format!("{}: {}", self.scene.name_of(place), status.text())).collect()
+    }
+}

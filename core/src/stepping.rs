@@ -1,0 +1,224 @@
+//! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
+//! state as they were.
+
+use crate::contact::{set_anchor, swept_contact};
+use crate::integrate::Rk4;
+use crate::model::{Formulation, Model};
+use crate::nystrom::Poses;
+use crate::scalar::Real;
+use crate::sim::{Method, Motion, Sim, motion, split_state};
+use crate::status::{Error, Result, Status};
+use crate::work::Work;
+use crate::workspace::{copy, put};
+
+impl<R: Real> Sim<'_, R> {
+    /// One step of the method (for `Adams` one step of its own choice).
+    ///
+    /// # Errors
+    /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`; time and state are then as before.
+    pub fn step(&mut self) -> Result<()> {
+        match self.head.method {
+            Method::Rk4 { step } | Method::Abm4 { step } => {
+                self.fixed_step(step, true)?;
+            }
+            Method::Adams { .. } => {
+                self.adams_step(R::MAX)?;
+                self.show_adams(self.head.adams.time())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Advances to exactly `t_end`; nothing is evaluated beyond it. A fixed-step method shortens its last step.
+    ///
+    /// # Errors
+    /// As [`Sim::step`]; the state shown is then that of the last step that succeeded.
+    pub fn advance(&mut self, t_end: R) -> Result<()> {
+        self.advance_dense(t_end, t_end)
+    }
+
+    /// Shows the state at `t_out`; the integrator may run ahead, but not beyond `t_stop`. Cheaper than [`Sim::advance`] when
+    /// output is wanted at many times: a variable-step method keeps its steps and interpolates. A fixed-step method ends
+    /// with a shortened Runge–Kutta step, so output times should be multiples of its step.
+    ///
+    /// # Errors
+    /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
+    pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
+        if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.head.time) {
+            return Err(Error::new(Status::BadStep).of("t", t_out.to_f64()));
+        }
+        if t_out == self.head.time {
+            return Ok(());
+        }
+        match self.head.method {
+            Method::Adams { .. } => {
+                while !self.head.started || self.head.adams.time() < t_out {
+                    if let Err(e) = self.adams_step(t_stop) {
+                        if self.head.started && self.head.adams.time() > self.head.time {
+                            self.show_adams(self.head.adams.time())?;
+                        }
+                        return Err(e);
+                    }
+                }
+                self.show_adams(t_out)
+            }
+            Method::Rk4 { step } | Method::Abm4 { step } => {
+                // Rounding of the time must not make a step of almost no length.
+                let slack = step * R::lit(1e-6).max(R::lit(8.0) * R::EPSILON);
+                while self.head.time + step <= t_out + slack {
+                    self.fixed_step(step, true)?;
+                }
+                let rest = t_out - self.head.time;
+                if rest > slack {
+                    self.fixed_step(rest, false)?;
+                }
+                if rest.abs() <= slack || rest > slack {
+                    self.head.time = t_out;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Forgets the integrator's past, as after a jump of the drives.
+    pub fn restart(&mut self) {
+        self.head.abm4.reset();
+        self.head.started = false;
+        self.head.base = self.head.time;
+        self.head.step_count = 0;
+    }
+
+    /// One step of a fixed-step method; `regular` steps keep the multistep history.
+    fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
+        copy(self.state.saved, self.state.y);
+        let (t, abm4) = (self.head.time, self.head.abm4);
+        let use_abm4 = regular && matches!(self.head.method, Method::Abm4 { .. });
+        self.head.fresh = false;
+        let mut motion = motion!(self);
+        let stepped = if use_abm4 {
+            self.head.abm4.step(&mut motion, t, h, self.state.y, self.state.integrator)
+        } else {
+            Rk4::new().step(&mut motion, t, h, self.state.y, self.state.integrator)
+        };
+        let next = if regular { self.head.base + R::count(self.head.step_count as usize + 1) * h } else { t + h };
+        let arrived = stepped.and_then(|()| {
+            self.head.time = next;
+            self.show_checked()
+        });
+        if let Err(e) = arrived {
+            copy(self.state.y, self.state.saved);
+            self.head.time = t;
+            self.head.abm4 = abm4;
+            self.head.abm4.reset();
+            self.head.counters.rejected += 1;
+            self.show()?;
+            return Err(e);
+        }
+        self.head.counters.steps += 1;
+        if regular {
+            self.head.step_count += 1;
+        } else {
+            self.head.abm4.reset();
+            (self.head.base, self.head.step_count) = (self.head.time, 0);
+        }
+        Ok(())
+    }
+
+    /// One accepted step of the variable-step method.
+    fn adams_step(&mut self, t_stop: R) -> Result<()> {
+        self.head.fresh = false;
+        let mut adams = self.head.adams;
+        if !self.head.started {
+            adams.start(self.head.time, self.state.y, self.state.integrator)?;
+            self.head.started = true;
+            // Trial states are measured from the placements of the state shown; the buffers may hold others.
+            let (p, _) = split_state(&self.model, self.state.y);
+            place_only(&self.model, &mut self.work, self.head.time, p);
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
+        }
+        let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
+        self.head.adams = adams;
+        outcome?;
+        let y = self.head.adams.state(self.state.integrator);
+        let (p, _) = split_state(&self.model, y);
+        place_only(&self.model, &mut self.work, self.head.adams.time(), p);
+        set_anchor(self.state.anchor, self.work.poses, self.work.q);
+        Ok(())
+    }
+
+    /// Shows the variable-step solution at `t`, within the last step.
+    fn show_adams(&mut self, t: R) -> Result<()> {
+        let adams = self.head.adams;
+        if t == adams.time() {
+            copy(self.state.y, adams.state(self.state.integrator));
+        } else {
+            adams.interpolate(t, self.state.integrator, self.state.y, self.state.rate)?;
+        }
+        self.head.time = t;
+        self.show()
+    }
+
+    /// Positions, velocities and joints of the state, after a check of where it leads.
+    fn show_checked(&mut self) -> Result<()> {
+        if !self.state.y.iter().all(|x| x.is_finite()) {
+            return Err(Status::NonFiniteState.into());
+        }
+        let (p, dp) = split_state(&self.model, self.state.y);
+        let zero = [R::zero(); 3];
+        // A lone swimmer's rates come later, from its impulse.
+        let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
+        self.work.place(&self.model, self.head.time, p, dp)?;
+        if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
+            return Err(Error::new(Status::Contact).at(a).with(b));
+        }
+        self.show()
+    }
+
+    /// Positions, velocities and joints of the state.
+    pub(crate) fn show(&mut self) -> Result<()> {
+        self.head.fresh = false;
+        let model = self.model;
+        if model.head.plan.formulation == Formulation::LockedMomentum {
+            // The rates follow from the impulse: one factorization.
+            self.refresh()?;
+        } else {
+            let (p, dp) = split_state(&model, self.state.y);
+            self.work.place(&model, self.head.time, p, dp)?;
+        }
+        copy(self.state.positions, self.work.q);
+        copy(self.state.velocities, self.work.qd);
+        for (k, (u, du)) in self.work.s.iter().zip(self.work.ds.iter()).enumerate() {
+            put(self.state.joints, 2 * k, *u);
+            put(self.state.joints, 2 * k + 1, *du);
+        }
+        if !self.head.started {
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
+        }
+        Ok(())
+    }
+
+    /// Makes the buffers hold an evaluation of the state shown, accelerations included.
+    pub(crate) fn refresh(&mut self) -> Result<()> {
+        if self.head.fresh {
+            return Ok(());
+        }
+        let model = self.model;
+        let (p, dp) = split_state(&model, self.state.y);
+        let zero = [R::zero(); 3];
+        let locked = model.head.plan.formulation == Formulation::LockedMomentum;
+        let dp = if locked { &zero } else { dp };
+        let mut counters = self.head.counters;
+        self.work.evaluate(&model, &self.head.impulse, self.head.time, p, dp, &mut counters)?;
+        if locked && !model.head.tracks_work {
+            self.work.accelerate(&model, self.head.time)?;
+        }
+        self.head.fresh = true;
+        Ok(())
+    }
+}
+
+/// Poses of a state without any check.
+fn place_only<R: Real>(model: &Model<'_, R>, work: &mut Work<'_, R>, t: R, p: &[R]) {
+    crate::articulation::set_coordinates(model, t, p, &[], work.channels, work.s, work.ds, work.dds);
+    crate::articulation::place_links(model, work.s, work.q, work.poses);
+}
