@@ -78,8 +78,8 @@ fn principal_value_of_a_polynomial_is_i_pi_times_it() {
             let (x, y): (Vec<f64>, Vec<f64>) = f.iter().map(|f| (f.re, f.im)).unzip();
             let real: Vec<f64> = apply(&re, &x).iter().zip(apply(&im, &y)).map(|(a, b)| a - b).collect();
             let imaginary: Vec<f64> = apply(&im, &x).iter().zip(apply(&re, &y)).map(|(a, b)| a + b).collect();
-            close(&real, &y.iter().map(|y| -f64::PI * y).collect::<Vec<_>>(), 1e-11);
-            close(&imaginary, &x.iter().map(|x| f64::PI * x).collect::<Vec<_>>(), 1e-11);
+            close(&real, &y.iter().map(|y| -f64::PI * y).collect::<Vec<_>>(), 2e-12);
+            close(&imaginary, &x.iter().map(|x| f64::PI * x).collect::<Vec<_>>(), 2e-12);
         }
     }
 }
@@ -170,7 +170,7 @@ fn double_layer_of_one_is_the_solid_angle() {
         let a = assembled(in_tank);
         let one = vec![1.0; a.nodes.len()];
         let exact: Vec<f64> = a.nodes.iter().map(|node| if node.sign > 0.0 { 1.0 } else { on_solids }).collect();
-        close(&product(&a.matrix, &one), &exact, 1e-12);
+        close(&product(&a.matrix, &one), &exact, 1e-13);
     }
 }
 
@@ -196,7 +196,7 @@ fn green_identity_holds_for_harmonic_functions_inside_and_outside() {
                 left.iter_mut().zip(a.completion(u)).for_each(|(l, c)| *l -= c);
             }
             let right: Vec<f64> = product(&a.regular, conjugate).iter().map(|x| sign * x).collect();
-            close(&left, &right, 1e-11);
+            close(&left, &right, 8e-13);
         }
     }
 }
@@ -254,10 +254,10 @@ fn density_form_gives_the_potential_of_the_direct_formulation() {
         let mean = |u: &[f64]| u.iter().sum::<f64>() / n as f64;
         let (p, d) = (mean(&potential), mean(&direct));
         if !in_tank {
-            close(&[p], &[d], 1e-12);
+            close(&[p], &[d], 1e-14);
         }
         potential.iter_mut().for_each(|x| *x -= p);
         direct.iter_mut().for_each(|x| *x -= d);
-        close(&potential, &direct, 1e-11);
+        close(&potential, &direct, 5e-14);
     }
 }
