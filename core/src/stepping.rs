@@ -131,7 +131,9 @@ impl<R: Real> Sim<'_, R> {
         if !self.head.started {
             adams.start(self.head.time, self.state.y, self.state.integrator)?;
             self.head.started = true;
-            // The poses of the state shown are the ones that trial states are measured from.
+            // Trial states are measured from the state shown, whatever was evaluated since it was.
+            let (p, _) = split_state(&self.model, self.state.y);
+            place_only(&self.model, &mut self.work, self.head.time, p);
             copy(self.state.anchor, self.work.poses);
         }
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
