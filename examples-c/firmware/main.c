@@ -23,9 +23,15 @@ typedef double real;
 enum { LINKS = 3, NODES = 16, STEPS = 10, JOINTS = LINKS - 1 };
 static const real STEP = (real)0.1;
 
-/* Three links of 16 nodes, one kind of outline, two joints with one harmonic term each. */
-static unsigned char model_memory[MODEL_BYTES(0)];
-static unsigned char sim_memory[SIM_BYTES(0)];
+/* One body, two joints, links of 16 nodes; no walls, no circulation, ellipses only; two harmonic terms, no channels. */
+static union {
+    uint64_t align;
+    unsigned char bytes[MODEL_BYTES(1, JOINTS, NODES, 0, 0, 0, 0, JOINTS)];
+} model_memory;
+static union {
+    uint64_t align;
+    unsigned char bytes[SIM_BYTES(1, JOINTS, NODES, 0, 0, 0, 0)];
+} sim_memory;
 static NEKTON(model) *model;
 
 static void print_count(const char *what, uint32_t n)
@@ -105,7 +111,7 @@ static int32_t set_up(void)
     body.link_count = LINKS;
     scene.bodies = &body;
     scene.body_count = 1;
-    return NEKTON(model_init)(model_memory, sizeof model_memory, &scene, &model, &diag);
+    return NEKTON(model_init)(model_memory.bytes, sizeof model_memory, &scene, &model, &diag);
 }
 
 static int32_t swim(const char *name, int32_t kind)
@@ -120,7 +126,7 @@ static int32_t swim(const char *name, int32_t kind)
 
     method.kind = kind;
     method.step = STEP;
-    status = NEKTON(sim_init)(sim_memory, sizeof sim_memory, model, &method, &sim, &diag);
+    status = NEKTON(sim_init)(sim_memory.bytes, sizeof sim_memory, model, &method, &sim, &diag);
     for (step = 1; step <= STEPS && status >= 0; step++) {
         board_ticks();
         status = NEKTON(sim_step)(sim, &diag);

@@ -14,6 +14,18 @@ pub struct Compiler {
 }
 
 impl Compiler {
+    /// The usual compiler.
+    pub fn usual() -> Self {
+        Compiler { rustc: None }
+    }
+
+    /// Name and version.
+    pub fn version(&self) -> String {
+        let rustc = self.rustc.clone().unwrap_or("rustc".into());
+        let line = output(&rustc.to_string_lossy(), &["--version"]).unwrap_or_default();
+        line.split(" (").next().unwrap_or("").to_string()
+    }
+
     /// Makes a cargo command use it.
     pub fn used_by<'c>(&self, command: &'c mut Command) -> &'c mut Command {
         if let Some(rustc) = &self.rustc {
@@ -33,7 +45,7 @@ pub fn installed(target: &str) -> bool {
 /// packages can be had. The error says what is missing and what would help.
 pub fn compiler(target: &str) -> Result<Compiler, String> {
     if installed(target) {
-        return Ok(Compiler { rustc: None });
+        return Ok(Compiler::usual());
     }
     let folder = root().join("target/bare-toolchain");
     let made = Command::new("sh")
