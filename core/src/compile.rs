@@ -9,6 +9,7 @@ use crate::scalar::Real;
 use crate::scene::{CirculationModel, Description};
 use crate::status::{Error, Result, Status};
 use crate::validate::validate;
+use crate::workspace::part;
 
 /// Lengths of a model's four arrays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -98,7 +99,7 @@ impl<'a, R: Real> Model<'a, R> {
         Ok(head)
     }
 
-    /// The view of a model in memory that [`Model::init`] filled.
+    /// The view of a model in memory that [`Model::init`] filled (what the arrays hold beyond the requirement is ignored).
     pub fn view(
         head: &'a ModelHead<R>,
         links: &'a [LinkRecord<R>],
@@ -106,7 +107,14 @@ impl<'a, R: Real> Model<'a, R> {
         boundaries: &'a [BoundaryRecord<R>],
         store: &'a [R],
     ) -> Self {
-        Model { head, links, coordinates, boundaries, store }
+        let plan = &head.plan;
+        Model {
+            head,
+            links: part(links, 0, plan.links),
+            coordinates: part(coordinates, 0, plan.free_coordinates + plan.prescribed_coordinates),
+            boundaries: part(boundaries, 0, plan.walls + plan.links),
+            store,
+        }
     }
 }
 fn head<R: Real, S: Description<R>>(

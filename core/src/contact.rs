@@ -3,10 +3,10 @@
 use crate::boundary::{BoundaryRecord, Nodes};
 use crate::model::Model;
 use crate::nystrom::{Poses, targets};
-use crate::scalar::{Complex, Real, cabs, dot, perp};
+use crate::scalar::{Complex, Real, cabs, cis, dot, perp};
 use crate::se2::Pose;
 use crate::status::Place;
-use crate::workspace::{at, part};
+use crate::workspace::{at, copy, part};
 
 /// The smallest distance between two boundaries of which one moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -205,38 +205,45 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
     None
 }
 
-/// Whether a pair could have passed through each other while the placements went from `from` to `to`:
-/// conservative advancement along the straight path, each advance no longer than the present gap allows.
+/// Remembers an anchor: placements of all boundaries, then headings of all links (a placement knows no full turns), from
+/// their coordinates.
+pub(crate) fn set_anchor<R: Real>(anchor: &mut [R], poses: &[R], q: &[R]) {
+    copy(anchor, poses);
+    for (heading, q) in anchor.iter_mut().skip(poses.len()).zip(q.chunks_exact(3)) {
+        *heading = at(q, 2);
+    }
+}
+
+/// Whether a pair could have passed through each other on the way from an anchor to placements and coordinates, each body
+/// at constant linear and angular velocity: conservative advancement, each advance no longer than the present gap allows.
 pub(crate) fn swept_contact<'a, R: Real>(
     model: &Model<'a, R>,
-    from: Poses<'a, R>,
-    to: Poses<'a, R>,
+    anchor: &'a [R],
+    to: Poses<'_, R>,
+    q: &[R],
 ) -> Option<(Place, Place)> {
-    for (i, j, a, b) in pairs(model, from) {
+    let headings = 4 * model.boundaries.len();
+    let turn_of = |record: &BoundaryRecord<R>| {
+        record.link.map_or(R::zero(), |link| at(q, 3 * link + 2) - at(anchor, headings + link))
+    };
+    for (i, j, a, b) in pairs(model, Poses(anchor)) {
         let (a1, b1) = (to.get(i), to.get(j));
-        let travel = |p: Pose<R>, q: Pose<R>, reach: R| cabs(q.origin - p.origin) + cabs(q.turn - p.turn) * reach;
-        let mut reach_a = a.record.reach;
-        let mut reach_b = b.record.reach;
-        // Only distances between the two matter: a wall's reach enters through the moving body's own motion.
-        if a.record.link.is_none() {
-            reach_a = R::zero();
-        }
-        if b.record.link.is_none() {
-            reach_b = R::zero();
-        }
-        let length = travel(a.pose, a1, reach_a) + travel(b.pose, b1, reach_b);
+        let (turn_a, turn_b) = (turn_of(a.record), turn_of(b.record));
+        let travel = |p: Pose<R>, q: Pose<R>, turn: R, reach: R| cabs(q.origin - p.origin) + turn.abs() * reach;
+        let length = travel(a.pose, a1, turn_a, a.record.reach) + travel(b.pose, b1, turn_b, b.record.reach);
         if circles_apart(&a, &b) > length {
             continue;
         }
-        let between = |p: Pose<R>, q: Pose<R>, x: R| {
-            let turn = p.turn + (q.turn - p.turn) * x;
-            Pose { origin: p.origin + (q.origin - p.origin) * x, turn: turn / cabs(turn) }
+        let between = |p: Pose<R>, q: Pose<R>, turn: R, x: R| Pose {
+            origin: p.origin + (q.origin - p.origin) * x,
+            turn: p.turn * cis(turn * x),
         };
         let limit = touching::<R>() * size(&a, &b);
         let mut x = R::zero();
         let mut advances = 0;
         while x < R::one() {
-            let (pa, pb) = (Placed { pose: between(a.pose, a1, x), ..a }, Placed { pose: between(b.pose, b1, x), ..b });
+            let pa = Placed { pose: between(a.pose, a1, turn_a, x), ..a };
+            let pb = Placed { pose: between(b.pose, b1, turn_b, x), ..b };
             // Nodes are enough here: their distance exceeds the gap by less than a spacing.
             let (square, _, _) = closest_nodes(&pa, &pb);
             let coarse = square.sqrt() - R::HALF * (a.record.spacing + b.record.spacing);

@@ -59,6 +59,8 @@ pub mod lu;
 mod lu_faer;
 pub mod model;
 pub(crate) mod nystrom;
+#[cfg(all(test, feature = "alloc"))]
+mod nystrom_test;
 #[cfg(feature = "alloc")]
 pub mod owned;
 pub mod plan;

@@ -102,7 +102,8 @@ pub enum ForceFormula {
     /// Exact gradient of the discrete added mass: conserves the discrete energy at any resolution.
     #[default]
     ExactGradient,
-    /// The boundary integral (2.15), as an independent cross-check.
+    /// The boundary integral (2.15), as an independent cross-check, for every scene: one transposed solve gives the whole
+    /// force. Agrees with the exact gradient where space is resolved; conserves energy only there.
     Boundary,
 }
 

@@ -182,11 +182,13 @@ fn table<R: Real>(rows: &[R], t: R) -> [R; 3] {
         return [R::NAN; 3];
     }
     let (first, last) = (row(0), row(n - 1));
-    if t <= first[0] {
-        return if t == first[0] { [first[1], first[2], first[3]] } else { [first[1], R::zero(), R::zero()] };
-    }
-    if t >= last[0] {
-        return if t == last[0] { [last[1], last[2], last[3]] } else { [last[1], R::zero(), R::zero()] };
+    // A step that ends with the table may miss its last time by rounding; it must not find the signal at rest there.
+    let slack = R::lit(16.0) * R::EPSILON * first[0].abs().max(last[0].abs());
+    for (end, beyond) in [(first, t <= first[0]), (last, t >= last[0])] {
+        if beyond {
+            let near = (t - end[0]).abs() <= slack;
+            return if near { [end[1], end[2], end[3]] } else { [end[1], R::zero(), R::zero()] };
+        }
     }
     let (mut low, mut high) = (0, n - 1);
     while high - low > 1 {

@@ -112,7 +112,7 @@ buffers! {
         rate: d.state,
         positions: 3 * d.links,
         velocities: 3 * d.links,
-        anchor: 4 * d.boundaries,
+        anchor: 4 * d.boundaries + d.links,
         joints: 2 * d.coordinates,
         commands: d.channels * CHANNEL_LEN,
         integrator: d.work::<R>().unwrap_or(usize::MAX),
@@ -132,8 +132,9 @@ pub(crate) struct Motion<'s, 'a, R> {
     pub(crate) model: Model<'a, R>,
     pub(crate) work: &'s mut Work<'a, R>,
     pub(crate) impulse: [R; 3],
-    /// Poses at the last accepted state, beyond which no trial state may jump; empty: no such check.
-    pub(crate) anchor: &'s [R],
+    /// Placements at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
+    /// then no body may lie inside another.
+    pub(crate) anchor: Option<&'s [R]>,
     pub(crate) counters: &'s mut Counters,
 }
 
@@ -162,9 +163,12 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let zero = [R::zero(); 3];
         let dp = if locked { &zero } else { dp };
         self.work.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
-        if !self.anchor.is_empty()
-            && let Some((a, b)) = swept_contact(&model, Poses(self.anchor), Poses(self.work.poses))
-        {
+        let poses = Poses(self.work.poses);
+        let contact = match self.anchor {
+            Some(anchor) => swept_contact(&model, anchor, poses, self.work.q),
+            None => first_misplaced(&model, poses),
+        };
+        if let Some((a, b)) = contact {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         let n = model.head.plan.free_coordinates;
@@ -191,7 +195,7 @@ macro_rules! motion {
             model: $sim.model,
             work: &mut $sim.work,
             impulse: $sim.head.impulse,
-            anchor: &*$sim.state.anchor,
+            anchor: Some(&*$sim.state.anchor),
             counters: &mut $sim.head.counters,
         }
     };
@@ -350,7 +354,13 @@ impl<'a, R: Real> Sim<'a, R> {
         let before = self.head.time;
         copy(self.state.y, y);
         self.head.time = t;
-        if let Err(e) = self.show() {
+        let mut shown = self.show();
+        if shown.is_ok()
+            && let Some((a, b)) = first_misplaced(&self.model, Poses(self.work.poses))
+        {
+            shown = Err(Error::new(Status::Contact).at(a).with(b));
+        }
+        if let Err(e) = shown {
             copy(self.state.y, self.state.saved);
             self.head.time = before;
             self.show()?;
@@ -360,8 +370,8 @@ impl<'a, R: Real> Sim<'a, R> {
         Ok(())
     }
 
-    /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque only
-    /// u counts. The integrator starts anew if it could have looked past the present time.
+    /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque these
+    /// are ν, ν̇ and ν̈. The integrator starts anew if it could have looked past the present time.
     ///
     /// # Errors
     /// `Unsupported` if there is no such channel, `NotFinite`, `BadTable` if the times do not increase.
@@ -398,7 +408,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         self.head.fresh = false;
         // The user's integrator may jump: no state is asked where it came from.
-        let result = Motion { anchor: &[], ..motion!(self) }.rhs(t, y, ydot);
+        let result = Motion { anchor: None, ..motion!(self) }.rhs(t, y, ydot);
         if result.is_err() {
             ydot.fill(R::zero());
         }

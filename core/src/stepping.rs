@@ -1,7 +1,7 @@
 //! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
 //! state as they were.
 
-use crate::contact::swept_contact;
+use crate::contact::{set_anchor, swept_contact};
 use crate::integrate::Rk4;
 use crate::model::{Formulation, Model};
 use crate::nystrom::Poses;
@@ -131,10 +131,10 @@ impl<R: Real> Sim<'_, R> {
         if !self.head.started {
             adams.start(self.head.time, self.state.y, self.state.integrator)?;
             self.head.started = true;
-            // Trial states are measured from the state shown, whatever was evaluated since it was.
+            // Trial states are measured from the placements of the state shown; the buffers may hold others.
             let (p, _) = split_state(&self.model, self.state.y);
             place_only(&self.model, &mut self.work, self.head.time, p);
-            copy(self.state.anchor, self.work.poses);
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
         }
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
         self.head.adams = adams;
@@ -142,7 +142,7 @@ impl<R: Real> Sim<'_, R> {
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
         place_only(&self.model, &mut self.work, self.head.adams.time(), p);
-        copy(self.state.anchor, self.work.poses);
+        set_anchor(self.state.anchor, self.work.poses, self.work.q);
         Ok(())
     }
 
@@ -164,8 +164,11 @@ impl<R: Real> Sim<'_, R> {
             return Err(Status::NonFiniteState.into());
         }
         let (p, dp) = split_state(&self.model, self.state.y);
+        let zero = [R::zero(); 3];
+        // A lone swimmer's rates come later, from its impulse.
+        let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
         self.work.place(&self.model, self.head.time, p, dp)?;
-        if let Some((a, b)) = swept_contact(&self.model, Poses(self.state.anchor), Poses(self.work.poses)) {
+        if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         self.show()
@@ -189,7 +192,7 @@ impl<R: Real> Sim<'_, R> {
             put(self.state.joints, 2 * k + 1, *du);
         }
         if !self.head.started {
-            copy(self.state.anchor, self.work.poses);
+            set_anchor(self.state.anchor, self.work.poses, self.work.q);
         }
         Ok(())
     }

@@ -6,6 +6,26 @@ use nekton::status::{Error, Result};
 use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::sync::Arc;
 
+/// What a scalar type allows; about ten times what is measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerances {
+    /// Relative error of a value that is known in closed form and resolved in space.
+    pub closed_form: f64,
+    /// Tolerance that the variable-step method can fulfil with ease.
+    pub integrator: f64,
+    /// Relative change of a conserved quantity over a few seconds at that tolerance.
+    pub conserved: f64,
+}
+
+/// The table of tolerances.
+pub fn tolerances<R: Real>() -> Tolerances {
+    if R::EPSILON.to_f64() > 1e-10 {
+        Tolerances { closed_form: 3e-6, integrator: 1e-6, conserved: 4e-6 }
+    } else {
+        Tolerances { closed_form: 5e-15, integrator: 1e-11, conserved: 2e-10 }
+    }
+}
+
 /// The example of the README.
 #[doc = include_str!("../../README.md")]
 #[cfg(doctest)]

@@ -66,7 +66,7 @@ fn energy_of_free_bodies_with_every_term_is_conserved() {
     let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 0.01 });
     let scene = Scene { tank, repulsion, obstacles: &obstacles, bodies: &bodies, ..Scene::new(1.1, 0.5) };
     let (drift, kinetic) = drift(&mut simulation(&scene, adams(1e-11)).view(), 1.5);
-    assert!(drift <= 1e-8 * kinetic, "{drift:e} of {kinetic:e}");
+    assert!(drift <= 3e-10 * kinetic, "{drift:e} of {kinetic:e}");
 }
 
 #[test]
@@ -75,20 +75,54 @@ fn energy_is_conserved_even_when_space_is_not_resolved() {
     let bodies = bodies(&links);
     let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
     let (drift, kinetic) = drift(&mut simulation(&scene, adams(1e-11)).view(), 2.0);
-    assert!(drift <= 1e-9 * kinetic, "{drift:e} of {kinetic:e}");
+    assert!(drift <= 3e-10 * kinetic, "{drift:e} of {kinetic:e}");
+}
+
+/// Largest change of the impulse until `duration`, relative to its largest component.
+fn impulse_drift(scene: &Scene<'_, f64>, duration: f64) -> f64 {
+    let mut sim = simulation(scene, adams(1e-11));
+    let mut sim = sim.view();
+    let start = sim.impulse().unwrap();
+    let mut drift = 0.0_f64;
+    for k in 1..=5 {
+        sim.advance(duration * f64::from(k) / 5.0).unwrap();
+        drift = drift.max(difference(&sim.impulse().unwrap(), &start));
+    }
+    println!("impulse {start:?}, drift {drift:.1e}, gap {:?}, {:?}", sim.gap().distance, sim.counters());
+    drift
 }
 
 #[test]
-fn impulse_of_free_bodies_is_conserved() {
-    let links = three(64, [0.0; 3]);
-    let bodies = bodies(&links);
-    let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, adams(1e-11));
-    let mut sim = sim.view();
-    let start = sim.impulse().unwrap();
-    for k in 1..=5 {
-        sim.advance(0.5 * f64::from(k)).unwrap();
-        assert_close(&sim.impulse().unwrap(), &start, 1e-9);
+fn impulse_of_free_bodies_is_conserved_at_any_resolution() {
+    // The discrete added mass moves with the bodies as a whole: Noether's theorem holds for it as it is.
+    for nodes in [24, 64] {
+        let links = three(nodes, [0.0; 3]);
+        let bodies = bodies(&links);
+        let drift = impulse_drift(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, 1.5);
+        assert!(drift <= 1.5e-10, "{nodes} nodes: {drift:e}");
     }
+}
+
+#[test]
+fn impulse_of_circulating_bodies_is_conserved() {
+    // With the canonical impulse of the circulations; their sum is not zero. Two bodies, and three of them.
+    for nodes in [24, 64] {
+        let links = three(nodes, [0.6, -0.9, 0.4]);
+        let bodies = bodies(&links);
+        for bodies in [&bodies[..2], &bodies] {
+            let drift = impulse_drift(&Scene { bodies, ..Scene::new(1.1, 0.0) }, 1.5);
+            assert!(drift <= 5e-10, "{nodes} nodes, {} bodies: {drift:e}", bodies.len());
+        }
+    }
+}
+
+#[test]
+fn impulse_is_not_conserved_in_the_paper_model_of_circulation() {
+    let links = three(64, [0.6, -0.9, 0.4]);
+    let bodies = bodies(&links);
+    let circulation = nekton::scene::CirculationModel::Paper;
+    let drift = impulse_drift(&Scene { circulation, bodies: &bodies[..2], ..Scene::new(1.1, 0.0) }, 1.5);
+    assert!(drift >= 0.1, "{drift:e}");
 }
 
 #[test]
@@ -104,7 +138,7 @@ fn impulse_is_the_sum_of_the_momenta() {
         sum[1] += p[1];
         sum[2] += p[2] + q[0] * p[1] - q[1] * p[0];
     }
-    assert_close(&sim.impulse().unwrap(), &sum, 1e-13);
+    assert_close(&sim.impulse().unwrap(), &sum, 2e-15);
 }
 
 #[test]
@@ -117,7 +151,7 @@ fn energy_is_the_quadratic_form_of_the_mass_matrices() {
     let qd = sim.velocities().to_vec();
     let all = 0.5 * inner(&times(&matrix(&mut sim, |sim, out| sim.mass_matrix(out)), &qd), &qd);
     let fluid = 0.5 * inner(&times(&matrix(&mut sim, |sim, out| sim.added_mass(out)), &qd), &qd);
-    assert_close(&[energy.kinetic_fluid, energy.kinetic_bodies], &[fluid, all - fluid], 1e-13);
+    assert_close(&[energy.kinetic_fluid, energy.kinetic_bodies], &[fluid, all - fluid], 2e-15);
 }
 
 #[test]
@@ -146,20 +180,30 @@ fn momentum_form_gives_the_same_motion_as_the_acceleration_form() {
     let mut sim = simulation(&scene, adams(1e-12));
     let mut sim = sim.view();
     let momentum = times(&mass(&mut sim), sim.velocities());
-    let mut y: Vec<f64> = sim.positions().iter().copied().chain(momentum).collect();
-    let (steps, duration) = (8, 0.4);
-    let h = duration / f64::from(steps);
-    for _ in 0..steps {
-        let shifted = |k: &[f64], c: f64| -> Vec<f64> { y.iter().zip(k).map(|(y, k)| y + c * k).collect() };
-        let k1 = rate(&y);
-        let k2 = rate(&shifted(&k1, h / 2.0));
-        let k3 = rate(&shifted(&k2, h / 2.0));
-        let k4 = rate(&shifted(&k3, h));
-        y = (0..12).map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])).collect();
-    }
+    let start: Vec<f64> = sim.positions().iter().copied().chain(momentum).collect();
+    let duration = 0.3;
+    let integrate = |steps: u32| {
+        let (mut y, h) = (start.clone(), duration / f64::from(steps));
+        for _ in 0..steps {
+            let shifted = |k: &[f64], c: f64| -> Vec<f64> { y.iter().zip(k).map(|(y, k)| y + c * k).collect() };
+            let k1 = rate(&y);
+            let k2 = rate(&shifted(&k1, h / 2.0));
+            let k3 = rate(&shifted(&k2, h / 2.0));
+            let k4 = rate(&shifted(&k3, h));
+            y = (0..12).map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i])).collect();
+        }
+        y
+    };
+    // Richardson's extrapolation of order 4.
+    let (coarse, fine) = (integrate(8), integrate(16));
+    let exact: Vec<f64> = coarse.iter().zip(&fine).map(|(c, f)| f + (f - c) / 15.0).collect();
     sim.advance(duration).unwrap();
-    println!("{:.1e}", difference(sim.positions(), &y[..6]));
-    assert_close(sim.positions(), &y[..6], 1e-8);
+    let gap = sim.gap().distance;
+    assert!(gap > 0.3, "{gap}");
+    let momentum = times(&mass(&mut sim), sim.velocities());
+    println!("{:.1e}, {:.1e}", difference(sim.positions(), &exact[..6]), difference(&momentum, &exact[6..]));
+    assert_close(sim.positions(), &exact[..6], 1e-11);
+    assert_close(&momentum, &exact[6..], 5e-11);
 }
 
 #[test]
@@ -172,9 +216,9 @@ fn gyroscopic_matrix_is_antisymmetric_and_does_no_work() {
         let mut sim = sim.view();
         let g = matrix(&mut sim, |sim, out| sim.gyroscopic(out));
         let negative_transpose: Vec<f64> = (0..9).flat_map(|i| g.iter().map(move |column| -column[i])).collect();
-        assert_close(&g.concat(), &negative_transpose, 1e-13);
+        assert_close(&g.concat(), &negative_transpose, 5e-15);
         let qd = sim.velocities().to_vec();
-        assert_near(inner(&times(&g, &qd), &qd), 0.0, 1e-13);
+        assert_near(inner(&times(&g, &qd), &qd), 0.0, 1e-15);
     }
 }
 
@@ -211,7 +255,7 @@ fn fish_alone_ends_at_rest() {
     let links = fish(64, 1.0);
     let bodies = [body(&links, [0.0; 3], [0.0; 3])];
     let (peak, last) = peak_and_final_speed(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) });
-    assert!(last <= 1e-12 * peak, "{last:e} of {peak:e}");
+    assert!(last <= 1e-15 * peak, "{last:e} of {peak:e}");
 }
 
 #[test]
@@ -219,7 +263,7 @@ fn fish_between_obstacles_does_not_end_at_rest() {
     let links = fish(64, 1.0);
     let bodies = [body(&links, [0.8, 0.0, 0.0], [0.0; 3])];
     let (peak, last) = peak_and_final_speed(&Scene { obstacles: &OBSTACLES, bodies: &bodies, ..Scene::new(1.0, 0.0) });
-    assert!(last >= 1e-4 * peak, "{last:e} of {peak:e}");
+    assert!(last >= 1e-3 * peak, "{last:e} of {peak:e}");
 }
 
 #[test]
@@ -228,7 +272,7 @@ fn energy_of_a_swimmer_changes_by_the_work_of_its_joints() {
     let bodies = [body(&links, [0.8, 0.0, 0.0], [0.1, 0.0, 0.0])];
     let scene = Scene { obstacles: &OBSTACLES, bodies: &bodies, ..Scene::new(1.0, 0.3) };
     let (drift, kinetic) = drift(&mut simulation(&scene, adams(1e-10)).view(), 3.0);
-    assert!(drift <= 1e-8 * kinetic, "{drift:e} of {kinetic:e}");
+    assert!(drift <= 5e-9 * kinetic, "{drift:e} of {kinetic:e}");
 }
 
 #[test]
@@ -249,7 +293,7 @@ fn rate_of_the_energy_is_the_power_of_the_joints() {
             sim.joint_torques(&mut torques, &mut powers).unwrap();
             let (mut u, mut du) = ([0.0; 2], [0.0; 2]);
             sim.joint_values(&mut u, &mut du);
-            assert_close(&powers, &[torques[0] * du[0], torques[1] * du[1]], 1e-14);
+            assert_close(&powers, &[torques[0] * du[0], torques[1] * du[1]], 1e-15);
             power = powers.iter().sum();
         }
     }

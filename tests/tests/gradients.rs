@@ -1,6 +1,6 @@
 //! Forces are the derivatives of their energies, found here by differences of sixth order.
 
-use nekton::scene::{Body, ForceFormula, Link, Repulsion, Scene, Shape, Wall};
+use nekton::scene::{Body, Drive, ForceFormula, Harmonic, Link, Repulsion, Root, Scene, Shape, Signal, Wall};
 use nekton_tests::*;
 
 /// Three links without any symmetry, as three bodies.
@@ -68,7 +68,7 @@ fn check_christoffel(nodes: usize) {
         let force = vector(&mut at_start(&scene).view(), |sim, out| sim.christoffel(out));
         let exact = contraction(&scene);
         println!("{place}, {nodes} nodes: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 2e-12);
     });
 }
 
@@ -83,13 +83,78 @@ fn christoffel_force_is_exact_even_when_space_is_not_resolved() {
 }
 
 #[test]
+fn christoffel_tensor_contracts_to_the_force_and_comes_from_a_potential() {
+    everywhere(32, |place, scene| {
+        let mut sim = at_start(scene);
+        let mut sim = sim.view();
+        let force = vector(&mut sim, |sim, out| sim.christoffel(out));
+        let (n, v) = (force.len(), sim.velocities().to_vec());
+        let mut tensor = vec![0.0; n * n * n];
+        sim.christoffel_tensor(&mut tensor).unwrap();
+        let entry = |a: usize, i: usize, j: usize| tensor[a + n * (i + n * j)];
+        let contracted: Vec<f64> =
+            (0..n).map(|a| (0..n * n).map(|ij| entry(a, ij % n, ij / n) * v[ij % n] * v[ij / n]).sum()).collect();
+        println!("{place}: {:.1e}", difference(&contracted, &force));
+        assert_close(&contracted, &force, 1e-13);
+        // Γ_aij + Γ_iaj = ∂_j M_ai, whose contraction with v is the rate of M: v·(Γ v v) = ½ v·Ṁ v.
+        let power: f64 = force.iter().zip(&v).map(|(f, v)| f * v).sum();
+        let scene = Scene { repulsion: None, ..*scene };
+        let rates = derivatives(&scene, |sim| {
+            let n = size(sim);
+            let mut mass = vec![0.0; n * n];
+            sim.mass_matrix(&mut mass).unwrap();
+            mass
+        });
+        let rate: f64 = (0..n)
+            .flat_map(|k| (0..n * n).map(move |ij| (k, ij)))
+            .map(|(k, ij)| v[k] * rates[k][ij] * v[ij % n] * v[ij / n])
+            .sum();
+        assert_near(power, 0.5 * rate, 1e-9);
+    });
+}
+
+#[test]
 fn boundary_formula_agrees_with_the_exact_gradient_when_space_is_resolved() {
     everywhere(128, |place, scene| {
         let force = |force| vector(&mut at_start(&Scene { force, ..*scene }).view(), |sim, out| sim.christoffel(out));
         let (exact, boundary) = (force(ForceFormula::ExactGradient), force(ForceFormula::Boundary));
         println!("{place}: {:.1e}", difference(&boundary, &exact));
-        assert_close(&boundary, &exact, 1e-9);
+        assert_close(&boundary, &exact, 4e-13);
     });
+}
+
+#[test]
+fn boundary_formula_agrees_with_the_exact_gradient_for_a_swimmer() {
+    // A prescribed and a torque-driven joint, with the root free and with it prescribed.
+    let wave = [Harmonic { amplitude: 0.5, frequency: 2.0, phase: 0.7, offset: 0.1 }];
+    let signal = Signal::Harmonic { terms: &wave, window: None };
+    let one = link(Shape::Ellipse { a: 0.6, b: 0.25 }, 1.2, 128);
+    let torque = Drive::Torque { torque: signal, stiffness: 0.3, damping: 0.1, rest: 0.2, start: [-0.4, 0.8] };
+    let swimmer = [
+        one,
+        hinged(one, 0, [-0.85, 0.0], [0.85, 0.0], Drive::Motion(signal)),
+        hinged(one, 0, [0.85, 0.0], [-0.85, 0.0], torque),
+    ];
+    let obstacles = [wall(Shape::Ellipse { a: 0.3, b: 0.5 }, [0.3, 1.4], 0.4, 128)];
+    let given = Root::Prescribed([signal, Signal::Constant(0.1), signal]);
+    for (name, root) in [("free", Root::Free), ("prescribed", given)] {
+        let bodies = [Body { root, ..body(&swimmer, [0.1, -0.2, 0.2], [0.3, -0.2, 0.4]) }];
+        for obstacles in [&obstacles[..0], &obstacles] {
+            let results = [ForceFormula::ExactGradient, ForceFormula::Boundary].map(|force| {
+                let mut sim = at_start(&Scene { force, obstacles, bodies: &bodies, ..Scene::new(1.3, 0.5) });
+                let mut sim = sim.view();
+                let (mut torques, mut powers) = (vec![f64::NAN; 2], vec![f64::NAN; 2]);
+                sim.joint_torques(&mut torques, &mut powers).unwrap();
+                let christoffel = vector(&mut sim, |sim, out| sim.christoffel(out));
+                [christoffel, vector(&mut sim, |sim, out| sim.accelerations(out)), torques]
+            });
+            let [exact, boundary] = results;
+            for (boundary, exact) in boundary.iter().zip(&exact) {
+                println!("root {name}, {} obstacles: {:.1e}", obstacles.len(), difference(boundary, exact));
+                assert_close(boundary, exact, 3e-14);
+            }
+        }
+    }
 }
 
 #[test]
@@ -98,7 +163,7 @@ fn repulsion_is_the_derivative_of_its_potential() {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.repulsion(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().repulsion]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 1e-10);
     });
 }
 
@@ -110,7 +175,7 @@ fn circulation_gradient_is_the_derivative_of_the_circulatory_energy() {
             let force = vector(&mut at_start(scene).view(), |sim, out| sim.circulation_gradient(out));
             let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().circulation]).concat();
             println!("{place}, {nodes} nodes: {:.1e}", difference(&force, &exact));
-            assert_close(&force, &exact, 1e-9);
+            assert_close(&force, &exact, 5e-12);
         });
     }
 }
@@ -121,7 +186,7 @@ fn buoyancy_is_the_derivative_of_its_potential() {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.buoyancy(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().buoyancy]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
-        assert_close(&force, &exact, 1e-9);
+        assert_close(&force, &exact, 5e-13);
     });
 }
 
@@ -143,6 +208,6 @@ fn gyroscopic_matrix_is_a_closed_form() {
             }
         }
         println!("{place}: {:.1e}", defect / largest);
-        assert!(defect <= 1e-9 * largest, "{place}: {defect:e} of {largest:e}");
+        assert!(defect <= 1e-11 * largest, "{place}: {defect:e} of {largest:e}");
     });
 }
