@@ -1576,8 +1576,8 @@ nekton_status nekton32_sim_gap(struct nekton32_sim *sim, struct nekton32_gap *ga
 nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekton_counters *counters);
 
 #ifdef __cplusplus
-}  // extern "C"
-#endif  // __cplusplus
+} /* extern C */
+#endif
 /*
  * Memory for static placement, bytes: upper bounds as integer constant expressions, not much above what nekton_model_req and
  * nekton_sim_req tell.

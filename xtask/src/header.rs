@@ -156,8 +156,10 @@ fn tidy(text: &str) -> String {
                 at += 3;
                 continue;
             }
-            ("} // extern \"C\"", ..) => out.push_str("} /* extern C */\n"),
-            ("#endif // __cplusplus", ..) => out.push_str("#endif\n"),
+            (line, ..) if line.starts_with("}") && line.ends_with("// extern \"C\"") => {
+                out.push_str("} /* extern C */\n")
+            }
+            (line, ..) if line.starts_with("#endif") => out.push_str("#endif\n"),
             (define, ..) if define.starts_with("#define") && define.contains(" -") => {
                 let (name, value) = define.rsplit_once(' ').unwrap_or((define, ""));
                 let _ = writeln!(out, "{name} ({value})");
