@@ -139,7 +139,7 @@ pub unsafe extern "C" fn nekton_model_notice(
     unsafe { report(null_mut(), model::notice(model, notice, place, status)) }
 }
 
-/// Point (x, y) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
+/// Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
 /// the world.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, OUT_OF_RANGE (no such place). Any thread.
 #[unsafe(no_mangle)]
@@ -147,10 +147,10 @@ pub unsafe extern "C" fn nekton_model_outline_point(
     model: *const ModelHandle<f64>,
     place: *const nekton_place,
     t: f64,
-    point: *mut [f64; 2],
+    point: *mut f64,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), model::outline_point(model, place, t, point)) }
+    unsafe { report(null_mut(), model::outline_point(model, place, t, point.cast())) }
 }
 
 /// Memory that nekton_sim_init needs.
@@ -323,19 +323,19 @@ pub unsafe extern "C" fn nekton_sim_advance_dense(
     unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
 }
 
-/// Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): t, u, du/dt, d2u/dt2 at both
-/// ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
+/// Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
+/// each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_set_channel(
     sim: *mut SimHandle<f64>,
     channel: usize,
-    from: *const [f64; 4],
-    to: *const [f64; 4],
+    from: *const f64,
+    to: *const f64,
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::set_channel(sim, channel, from, to)) }
+    unsafe { report(diag, sim::set_channel(sim, channel, from.cast(), to.cast())) }
 }
 
 /// Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton_sim_get_state, n = state_len, not overlapping.
@@ -510,16 +510,16 @@ pub unsafe extern "C" fn nekton_sim_energy(
     unsafe { report(diag, sim::energy(sim, energy)) }
 }
 
-/// Linear impulse (x, y) and angular impulse about the origin, of bodies, fluid and circulation.
+/// Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_impulse(
     sim: *mut SimHandle<f64>,
-    impulse: *mut [f64; 3],
+    impulse: *mut f64,
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::impulse(sim, impulse)) }
+    unsafe { report(diag, sim::impulse(sim, impulse.cast())) }
 }
 
 /// Error indicators of the space discretization at the state shown. 12 links + 2 solves.

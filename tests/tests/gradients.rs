@@ -83,6 +83,37 @@ fn christoffel_force_is_exact_even_when_space_is_not_resolved() {
 }
 
 #[test]
+fn christoffel_tensor_contracts_to_the_force_and_comes_from_a_potential() {
+    everywhere(32, |place, scene| {
+        let mut sim = at_start(scene);
+        let mut sim = sim.view();
+        let force = vector(&mut sim, |sim, out| sim.christoffel(out));
+        let (n, v) = (force.len(), sim.velocities().to_vec());
+        let mut tensor = vec![0.0; n * n * n];
+        sim.christoffel_tensor(&mut tensor).unwrap();
+        let entry = |a: usize, i: usize, j: usize| tensor[a + n * (i + n * j)];
+        let contracted: Vec<f64> =
+            (0..n).map(|a| (0..n * n).map(|ij| entry(a, ij % n, ij / n) * v[ij % n] * v[ij / n]).sum()).collect();
+        println!("{place}: {:.1e}", difference(&contracted, &force));
+        assert_close(&contracted, &force, 1e-13);
+        // Γ_aij + Γ_iaj = ∂_j M_ai, whose contraction with v is the rate of M: v·(Γ v v) = ½ v·Ṁ v.
+        let power: f64 = force.iter().zip(&v).map(|(f, v)| f * v).sum();
+        let scene = Scene { repulsion: None, ..*scene };
+        let rates = derivatives(&scene, |sim| {
+            let n = size(sim);
+            let mut mass = vec![0.0; n * n];
+            sim.mass_matrix(&mut mass).unwrap();
+            mass
+        });
+        let rate: f64 = (0..n)
+            .flat_map(|k| (0..n * n).map(move |ij| (k, ij)))
+            .map(|(k, ij)| v[k] * rates[k][ij] * v[ij % n] * v[ij / n])
+            .sum();
+        assert_near(power, 0.5 * rate, 1e-9);
+    });
+}
+
+#[test]
 fn boundary_formula_agrees_with_the_exact_gradient_when_space_is_resolved() {
     everywhere(128, |place, scene| {
         let force = |force| vector(&mut at_start(&Scene { force, ..*scene }).view(), |sim, out| sim.christoffel(out));

@@ -6,7 +6,7 @@
 //! died away at the grid's Nyquist mode, convolving on the grid is exact to rounding.
 
 use crate::curve::simple::{after, boxes_len, point};
-use crate::scalar::{Complex, Real, cabs, complex};
+use crate::scalar::{Complex, Real, cabs};
 use crate::status::{Result, Status};
 use crate::workspace::{add, at, axpy, buffers, part, part_mut, put};
 
@@ -218,7 +218,7 @@ fn transform<R: Real>(samples: &[R], roots: &mut [R], top: usize, modes: &mut [R
         let mut turn = 0;
         let mut sum = Complex::default();
         for &[re, im] in samples.as_chunks::<2>().0 {
-            sum += complex(re, im) * point(roots, turn);
+            sum += crate::scalar::complex(re, im) * point(roots, turn);
             turn += stride;
             if turn >= m {
                 turn -= m;
@@ -249,6 +249,7 @@ mod tests {
     extern crate std;
     use super::*;
     use crate::curve::Fourier;
+    use crate::scalar::complex;
     use std::vec;
     use std::vec::Vec;
 
