@@ -64,5 +64,7 @@ pub fn compiler(target: &str) -> Result<Compiler, String> {
         }
         Err(error) => error.to_string(),
     };
-    Err(format!("no compiler for {target}; try: rustup target add {target} (making one from Debian's packages failed: {why})"))
+    Err(format!(
+        "no compiler for {target}; try: rustup target add {target} (making one from Debian's packages failed: {why})"
+    ))
 }

@@ -19,21 +19,13 @@ struct Board {
 const BOARDS: [Board; 2] = [
     Board {
         name: "Cortex-M4F",
-        machine: Machine {
-            folder: "cortex-m4",
-            target: Some((CORTEX_M, "cortex-m4")),
-            tools: "arm-none-eabi-",
-        },
+        machine: Machine { folder: "cortex-m4", target: Some((CORTEX_M, "cortex-m4")), tools: "arm-none-eabi-" },
         emulated: "mps2-an386",
         floating_point: "fpv4-sp-d16",
     },
     Board {
         name: "Cortex-M7",
-        machine: Machine {
-            folder: "cortex-m7",
-            target: Some((CORTEX_M, "cortex-m7")),
-            tools: "arm-none-eabi-",
-        },
+        machine: Machine { folder: "cortex-m7", target: Some((CORTEX_M, "cortex-m7")), tools: "arm-none-eabi-" },
         emulated: "mps2-an500",
         floating_point: "fpv5-d16",
     },
@@ -180,7 +172,8 @@ impl Board {
 
         // Second line: text, data, bss.
         let sizes = ask(self.machine.tool("size").arg(&program))?;
-        let sizes: Vec<u64> = sizes.lines().nth(1).unwrap_or("").split_whitespace().filter_map(|w| w.parse().ok()).collect();
+        let sizes: Vec<u64> =
+            sizes.lines().nth(1).unwrap_or("").split_whitespace().filter_map(|w| w.parse().ok()).collect();
         let [text, data, bss, ..] = sizes[..] else { return Err("size printed no figures".into()) };
         let stack_reserved = 32 * 1024;
         let figures = [
@@ -226,7 +219,8 @@ fn hold(measured: &[Figures]) -> Result<(), String> {
     let (_, rows) = committed()?;
     for row in measured {
         println!("{}", row.join(","));
-        let old = rows.iter().find(|old| old[..2] == row[..2]).ok_or(format!("{FIGURES} has no row {:?}", &row[..2]))?;
+        let old =
+            rows.iter().find(|old| old[..2] == row[..2]).ok_or(format!("{FIGURES} has no row {:?}", &row[..2]))?;
         for ((old, new), name) in old.iter().zip(row).zip(COLUMNS).skip(2) {
             let (old, new): (f64, f64) = (old.parse().unwrap_or(f64::NAN), new.parse().unwrap_or(f64::NAN));
             let close = (new - old).abs() <= 0.1 * old;
@@ -261,7 +255,14 @@ fn table() -> Result<String, String> {
         let (kilo, mega) = (|i| number(i) / 1e3, |i| number(i) / 1e6);
         text += &format!(
             "| {} | {} | {:.0} | {:.0} | {:.1} | {:.2} | {:.2} | {:.2} |\n",
-            row[0], row[1], kilo(2), kilo(3), kilo(4), mega(7), mega(8), mega(9)
+            row[0],
+            row[1],
+            kilo(2),
+            kilo(3),
+            kilo(4),
+            mega(7),
+            mega(8),
+            mega(9)
         );
     }
     Ok(format!("{text}\nMeasured {how}.\n"))
@@ -276,7 +277,8 @@ pub fn run() -> ExitCode {
         }
         let date = output("date", &["-u", "+%Y-%m-%d"]).unwrap_or_default();
         let emulator = output("qemu-system-arm", &["--version"]).unwrap_or_default();
-        let emulator = emulator.lines().next().unwrap_or("").split(" (").next().unwrap_or("").replace("emulator version ", "");
+        let emulator =
+            emulator.lines().next().unwrap_or("").split(" (").next().unwrap_or("").replace("emulator version ", "");
         let mut text = format!("# {date}, {emulator}, {}\n{}\n", compiler.version(), COLUMNS.join(","));
         for row in rows {
             text += &(row.join(",") + "\n");

@@ -1,5 +1,8 @@
 //! Developer commands: `cargo xtask test` is the whole test run.
 
+mod archive;
+mod bare;
+mod firmware;
 mod header;
 mod steps;
 mod test;
@@ -9,8 +12,11 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: cargo xtask <command>
 
 commands:
-  test    everything: format, lints, builds without std and without heap, tests, documentation, scenes
-  header  include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
+  test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
+  firmware   docs/embedded.csv: size and speed on emulated microcontrollers
+  prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  symbols    include/nekton.symbols from ffi/src
+  header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
 fn main() -> ExitCode {
@@ -18,6 +24,9 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["firmware"] => firmware::run(),
+        ["prelink"] => archive::write_prelinked(),
+        ["symbols"] => archive::write_symbols(),
         ["header"] => header::run(),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
