@@ -21,6 +21,7 @@ typedef double real;
 #endif
 
 enum { LINKS = 3, NODES = 16, STEPS = 10, JOINTS = LINKS - 1 };
+enum { START = 3 }; /* steps that are not measured: ABM4 starts by RK4 */
 static const real STEP = (real)0.1;
 
 /* One body, two joints, links of 16 nodes; no walls, no circulation, ellipses only; two harmonic terms, no channels. */
@@ -130,7 +131,9 @@ static int32_t swim(const char *name, int32_t kind)
     for (step = 1; step <= STEPS && status >= 0; step++) {
         board_ticks();
         status = NEKTON(sim_step)(sim, &diag);
-        ticks += board_ticks();
+        if (step > START) {
+            ticks += board_ticks();
+        }
         if (status >= 0) {
             status = NEKTON(sim_positions)(sim, q, 3 * LINKS);
         }
@@ -145,7 +148,7 @@ static int32_t swim(const char *name, int32_t kind)
         return failed(name, status);
     }
     board_print(name);
-    print_count(" ticks ", ticks / STEPS);
+    print_count(" ticks ", ticks / (STEPS - START));
     board_print("\n");
     return 0;
 }

@@ -21,10 +21,12 @@ pub struct Machine {
     pub target: Option<(&'static str, &'static str)>,
     /// What the names of the binary utilities begin with.
     pub tools: &'static str,
+    /// Their name of its object files.
+    pub format: &'static str,
 }
 
 /// This computer, without its operating system.
-pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "" };
+pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "", format: "elf64-x86-64" };
 
 impl Machine {
     pub fn tool(&self, name: &str) -> Command {
@@ -63,7 +65,8 @@ pub fn build(machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> 
 
 /// Symbols of an object or archive of which `nm` says one of these letters.
 fn symbols(machine: &Machine, file: &Path, letters: &str) -> Result<BTreeSet<String>, String> {
-    let listing = ask(machine.tool("nm").arg(file))?;
+    // With the format said, no plug-in tries its own reading.
+    let listing = ask(machine.tool("nm").arg(format!("--target={}", machine.format)).arg(file))?;
     let symbol = |line: &str| {
         let mut words = line.split_whitespace().rev();
         let (name, letter) = (words.next()?, words.next()?);

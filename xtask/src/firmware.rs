@@ -16,19 +16,14 @@ struct Board {
     floating_point: &'static str,
 }
 
+const fn cortex(processor: &'static str) -> Machine {
+    let target = Some((CORTEX_M, processor));
+    Machine { folder: processor, target, tools: "arm-none-eabi-", format: "elf32-littlearm" }
+}
+
 const BOARDS: [Board; 2] = [
-    Board {
-        name: "Cortex-M4F",
-        machine: Machine { folder: "cortex-m4", target: Some((CORTEX_M, "cortex-m4")), tools: "arm-none-eabi-" },
-        emulated: "mps2-an386",
-        floating_point: "fpv4-sp-d16",
-    },
-    Board {
-        name: "Cortex-M7",
-        machine: Machine { folder: "cortex-m7", target: Some((CORTEX_M, "cortex-m7")), tools: "arm-none-eabi-" },
-        emulated: "mps2-an500",
-        floating_point: "fpv5-d16",
-    },
+    Board { name: "Cortex-M4F", machine: cortex("cortex-m4"), emulated: "mps2-an386", floating_point: "fpv4-sp-d16" },
+    Board { name: "Cortex-M7", machine: cortex("cortex-m7"), emulated: "mps2-an500", floating_point: "fpv5-d16" },
 ];
 
 /// The names of the boards.
@@ -165,8 +160,9 @@ impl Board {
         link.args(sources("firmware", &["firmware.ld"])).args(["-nostartfiles", "--specs=nano.specs"]);
         ask(link.args(["-Wl,--gc-sections", "-o"]).arg(&program))?;
         let mut emulate = Command::new("timeout");
-        emulate.args(["300", "qemu-system-arm", "-M", self.emulated, "-nographic", "-icount", "shift=0"]);
-        emulate.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
+        emulate.args(["300", "qemu-system-arm", "-M", self.emulated, "-icount", "shift=0", "-display", "none"]);
+        emulate.args(["-serial", "null", "-monitor", "none", "-chardev", "stdio,id=out", "-semihosting-config"]);
+        emulate.args(["enable=on,target=native,chardev=out", "-kernel"]);
         let printed = Printed::of(&ask(emulate.arg(&program))?)?;
         compare(precision, &printed, &on_desktop(precision, option)?, allowed)?;
 
