@@ -1054,9 +1054,11 @@ nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
                                        struct nekton_diag *diag);
 
 /**
- * Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
- * each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+ * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt, d2u/dt2 (4 numbers)
+ * at both ends of the coming interval, quintic in between, constant outside. For a torque these are the torque and its rates.
+ * The integrator starts anew.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel).
+ * One thread per simulation.
  */
 nekton_status nekton_sim_set_channel(struct nekton_sim *sim,
                                      size_t channel,
@@ -1424,9 +1426,11 @@ nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
                                          struct nekton_diag *diag);
 
 /**
- * Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
- * each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+ * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt, d2u/dt2 (4 numbers)
+ * at both ends of the coming interval, quintic in between, constant outside. For a torque these are the torque and its rates.
+ * The integrator starts anew.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel).
+ * One thread per simulation.
  */
 nekton_status nekton32_sim_set_channel(struct nekton32_sim *sim,
                                        size_t channel,
@@ -1615,7 +1619,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
 #define NEKTON_P_U(bodies, joints, nodes, walls, wall_nodes) \
     (NEKTON_P_L(bodies, joints) * NEKTON_P_S(nodes) + NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes))
 #define NEKTON_P_KEPT(bodies, joints, walls, channels) \
-    (48 * NEKTON_P_C(bodies, joints) + 10 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
+    (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
      ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + NEKTON_P_S(circulation) * (u) * ((u) + 7))

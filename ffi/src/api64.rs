@@ -323,9 +323,11 @@ pub unsafe extern "C" fn nekton_sim_advance_dense(
     unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
 }
 
-/// Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
-/// each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+/// Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt, d2u/dt2 (4 numbers)
+/// at both ends of the coming interval, quintic in between, constant outside. For a torque these are the torque and its rates.
+/// The integrator starts anew.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel).
+/// One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_set_channel(
     sim: *mut SimHandle<f64>,
