@@ -21,7 +21,8 @@ macro_rules! round_trip {
             let knots: [[Real; 2]; 5] = [[0.5, 0.0], [0.15, 0.45], [-0.4, 0.3], [-0.4, -0.3], [0.15, -0.45]];
 
             // The scene in Rust: every shape, every joint, every drive, walls, a prescribed root, all forces.
-            let plain = |shape, joint| Link { shape, mass: Mass::Density(1.5 as Real), nodes: 32, circulation: 0.0, joint };
+            let plain =
+                |shape, joint| Link { shape, mass: Mass::Density(1.5 as Real), nodes: 32, circulation: 0.0, joint };
             let joint = |parent, kind, drive| {
                 Some(Joint { parent, kind, parent_anchor: [0.9, 0.0], self_anchor: [-0.9, 0.0], drive })
             };
@@ -51,7 +52,11 @@ macro_rules! round_trip {
                     mass: Mass::Given { mass: 0.4, inertia: 0.02, centre_of_mass: [0.05, 0.0] },
                     ..plain(
                         Shape::Star { radius: 0.3, amplitude: 0.2, lobes: 3 },
-                        joint(0, JointKind::Slider { axis: [1.0, 0.2], angle: 0.3 }, Drive::Motion(Signal::Table(&rows))),
+                        joint(
+                            0,
+                            JointKind::Slider { axis: [1.0, 0.2], angle: 0.3 },
+                            Drive::Motion(Signal::Table(&rows)),
+                        ),
                     )
                 },
                 plain(Shape::Curve { points: &knots }, joint(0, JointKind::Hinge, Drive::Locked(2.0))),
@@ -72,7 +77,13 @@ macro_rules! round_trip {
                 nodes: 48,
                 circulation: 0.1,
             };
-            let tank = Wall { shape: Shape::Ellipse { a: 9.0, b: 7.0 }, position: [0.0; 2], angle: 0.1, nodes: 64, circulation: 0.0 };
+            let tank = Wall {
+                shape: Shape::Ellipse { a: 9.0, b: 7.0 },
+                position: [0.0; 2],
+                angle: 0.1,
+                nodes: 64,
+                circulation: 0.0,
+            };
             let obstacles = [polygon];
             let scene = Scene {
                 repulsion: Some(Repulsion { alpha: 4.0, epsilon: 0.01 }),
@@ -105,7 +116,8 @@ macro_rules! round_trip {
             (shape.kind, shape.radius, shape.amplitude, shape.lobes) = (NEKTON_SHAPE_STAR, 0.3, 0.2, 3);
             let l = &mut c_train[1];
             (l.mass_kind, l.mass, l.inertia, l.centre_of_mass) = (NEKTON_MASS_GIVEN, 0.4, 0.02, [0.05, 0.0]);
-            (l.parent, l.joint, l.axis, l.angle, l.drive) = (0, NEKTON_JOINT_SLIDER, [1.0, 0.2], 0.3, NEKTON_DRIVE_MOTION);
+            (l.parent, l.joint, l.axis, l.angle, l.drive) =
+                (0, NEKTON_JOINT_SLIDER, [1.0, 0.2], 0.3, NEKTON_DRIVE_MOTION);
             (l.signal.kind, l.signal.rows, l.signal.row_count) = (NEKTON_SIGNAL_TABLE, rows.as_ptr(), 2);
             let l = &mut c_train[2];
             (l.shape.kind, l.shape.points, l.shape.point_count) = (NEKTON_SHAPE_CURVE, knots.as_ptr(), knots.len());
@@ -140,7 +152,10 @@ macro_rules! round_trip {
                 let (c, r) = (unsafe { info.assume_init() }, model.view().link(i).unwrap());
                 assert_eq!((c.mass, c.inertia, c.area, c.perimeter), (r.mass, r.inertia, r.area, r.perimeter));
                 assert_eq!((c.centroid, c.nodes), (r.centroid, r.nodes));
-                assert_eq!((c.place.kind, c.place.index, c.place.link), (NEKTON_PLACE_LINK, i as i32 / 3, i as i32 % 3));
+                assert_eq!(
+                    (c.place.kind, c.place.index, c.place.link),
+                    (NEKTON_PLACE_LINK, i as i32 / 3, i as i32 % 3)
+                );
                 let mut point = [0.0; 2];
                 assert_eq!(unsafe { model_outline_point(handle, &c.place, 0.7, point.as_mut_ptr()) }, 0);
                 assert_eq!(Some(point), model.view().outline_point(r.place, 0.7));
@@ -218,7 +233,10 @@ macro_rules! round_trip {
                 assert!(gap.first.kind != NEKTON_PLACE_NONE && gap.second.kind != NEKTON_PLACE_NONE);
                 let mut counters = nekton_counters::default();
                 assert_eq!(unsafe { sim_counters(c, &mut counters) }, 0);
-                assert_eq!((counters.evaluations, counters.steps), (rust.counters().evaluations, rust.counters().steps));
+                assert_eq!(
+                    (counters.evaluations, counters.steps),
+                    (rust.counters().evaluations, rust.counters().steps)
+                );
                 let y = rust.state().to_vec();
                 let (mut ours, mut theirs) = (vec![0.0; y.len()], vec![0.0; y.len()]);
                 rust.rhs(t, &y, &mut ours).unwrap();
