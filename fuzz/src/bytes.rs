@@ -105,7 +105,7 @@ impl Random {
                 let word = self.word();
                 let byte = word as u8;
                 // Bytes above 249 are the strange ones.
-                if calm > 0 && byte > 249 && word >> 32 & 7 != 0 { byte - 100 } else { byte }
+                if calm > 0 && byte > 249 && word >> 32 & 63 != 0 { byte - 100 } else { byte }
             })
             .collect()
     }

@@ -178,10 +178,17 @@ macro_rules! precision {
                     t
                 }
 
-                /// Whether an advance by `time` is a matter of a hundred steps.
-                fn short(&self, time: R) -> bool {
-                    let adams = self.method.kind == NEKTON_METHOD_ADAMS;
-                    !time.is_finite() || if adams { time < 0.5 } else { time / self.method.step < 100.0 }
+                /// Whether an advance by `time` is a matter of a hundred steps. The variable-step method takes as many as
+                /// its tolerance asks for: in a stiff scene it is to do no more than a little.
+                unsafe fn short(&self, time: R) -> bool {
+                    if self.method.kind != NEKTON_METHOD_ADAMS {
+                        return !time.is_finite() || time / self.method.step < 100.0;
+                    }
+                    let mut counters = zeroed::<nekton_counters>();
+                    // SAFETY: a live simulation.
+                    assert!(unsafe { sim_counters(self.sim, &mut counters) } >= 0);
+                    let fast = R::of(counters.steps as f64) <= 50.0 + 200.0 * unsafe { self.now() }.abs();
+                    !time.is_finite() || time < 0.01 || (fast && time < 0.2)
                 }
 
                 unsafe fn call(&self, bytes: &mut Bytes<'_>) -> bool {

@@ -3,6 +3,7 @@
 mod archive;
 mod bare;
 mod firmware;
+mod fuzz;
 mod header;
 mod steps;
 mod test;
@@ -15,6 +16,8 @@ commands:
   test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  fuzz --minutes N
+             bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
@@ -25,6 +28,7 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["test"] => test::run(),
         ["firmware"] => firmware::run(),
+        ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),
         ["symbols"] => archive::write_symbols(),
         ["header"] => header::run(),
