@@ -183,7 +183,8 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
     sim.joint_torques(&mut a, &mut b).unwrap();
     check("torque", &a);
     check("power", &b);
-    let mut ask = |name: &str, n: usize, question: &mut dyn FnMut(&mut Sim<'_, R>, &mut [R]) -> nekton::Result<()>| {
+    type Question<'q, R> = &'q mut dyn FnMut(&mut Sim<'_, R>, &mut [R]) -> nekton::Result<()>;
+    let mut ask = |name: &str, n: usize, question: Question<'_, R>| {
         let mut out = vec![r(0.0); n];
         question(&mut sim, &mut out).unwrap();
         check(name, &out);

@@ -13,7 +13,7 @@ const BARE_TARGETS: [&str; 4] =
 /// Runs everything that the project promises.
 pub fn run() -> ExitCode {
     let mut steps = Steps::default();
-    steps.run("linker", || match require(&[("cc", "gcc")]) {
+    steps.run("compilers", || match require(&[("cc", "gcc"), ("c++", "g++")]) {
         Ok(()) => Outcome::Passed,
         Err(why) => Outcome::Failed(why),
     });
