@@ -10,7 +10,7 @@ pub use bytes::{Bytes, Random};
 /// Runs what the bytes say, in the precision that the first byte picks. Returns how far it came.
 pub fn run(bytes: &[u8]) -> Reached {
     let mut bytes = Bytes::new(bytes);
-    if bytes.byte() % 2 == 0 { calls::double::run(&mut bytes) } else { calls::single::run(&mut bytes) }
+    if bytes.byte().is_multiple_of(2) { calls::double::run(&mut bytes) } else { calls::single::run(&mut bytes) }
 }
 
 /// How far a run came.

@@ -125,7 +125,7 @@ impl<R: Number> Store<R> {
     }
 
     fn link(&mut self, bytes: &mut Bytes<'_>, l: usize) -> LinkDef<R> {
-        let side = if l % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if l.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut real = |ordinary: f64| R::of(bytes.real(ordinary));
         let mut link = LinkDef {
             density: real(1.2),
