@@ -1,5 +1,6 @@
 //! `cargo xtask test`.
 
+use crate::c;
 use crate::steps::{Outcome, Steps, cargo, execute, output, require, root};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -32,6 +33,7 @@ pub fn run() -> ExitCode {
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     );
+    c::add(&mut steps);
     scenes(&mut steps);
     steps.finish()
 }
