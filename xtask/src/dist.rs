@@ -92,7 +92,7 @@ fn archive(whole: &Path, work: &Path, result: &Path) -> Result<(), String> {
     let (linked, object) = (work.join("whole.o"), work.join("nekton.o"));
     let symbols = root().join(SYMBOLS);
     let mut link = Command::new("ld");
-    link.args(["-r", "--gc-sections", "-o"]).arg(&linked);
+    link.args(["-r", "--gc-sections", "--force-group-allocation", "-o"]).arg(&linked);
     for name in read(&symbols)?.lines() {
         link.args(["-u", name]);
     }
