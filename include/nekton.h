@@ -276,7 +276,10 @@ typedef struct nekton_shape {
     double height;
     /** Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default. */
     double corner_radius;
-    /** Polygon, curve: x, y of each point in order (the last joins the first). */
+    /**
+     * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+     * double (*)[2] to this type without a cast.
+     */
     const double (*points)[2];
     /** Number of points. */
     size_t point_count;
@@ -330,7 +333,7 @@ typedef struct nekton_signal {
     size_t harmonic_count;
     /** Harmonic: the window. */
     struct nekton_window window;
-    /** Table: the rows. */
+    /** Table: the rows, const as the points of a shape. */
     const double (*rows)[4];
     /** Number of rows. */
     size_t row_count;
@@ -588,7 +591,10 @@ typedef struct nekton32_shape {
     float height;
     /** Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default. */
     float corner_radius;
-    /** Polygon, curve: x, y of each point in order (the last joins the first). */
+    /**
+     * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+     * double (*)[2] to this type without a cast.
+     */
     const float (*points)[2];
     /** Number of points. */
     size_t point_count;
@@ -642,7 +648,7 @@ typedef struct nekton32_signal {
     size_t harmonic_count;
     /** Harmonic: the window. */
     struct nekton32_window window;
-    /** Table: the rows. */
+    /** Table: the rows, const as the points of a shape. */
     const float (*rows)[4];
     /** Number of rows. */
     size_t row_count;

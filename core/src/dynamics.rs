@@ -97,21 +97,22 @@ impl<R: Real> Work<'_, R> {
         }
     }
 
-    /// Adds every force that does not come from the fluid's inertia to `force`.
-    fn add_outer_forces(&mut self, model: &Model<'_, R>) {
+    /// Every force that comes neither from inertia nor from drives, into `outer`.
+    fn outer_forces(&mut self, model: &Model<'_, R>) {
         let poses = Poses(self.poses);
+        self.outer.fill(R::zero());
         let head = model.head;
         if head.plan.gravity {
-            buoyancy::add_gradient(model, poses, self.force);
+            buoyancy::add_gradient(model, poses, self.outer);
         }
         if let Some(law) = head.repulsion {
-            repulsion::add_gradient(model, poses, law, self.force);
+            repulsion::add_gradient(model, poses, law, self.outer);
         }
-        self.add_circulation(model, true);
+        self.add_circulation(model);
     }
 
-    /// Adds ∂T_c/∂q − G q̇ to `force`.
-    fn add_circulation(&mut self, model: &Model<'_, R>, energy: bool) {
+    /// Adds ∂T_c/∂q − G q̇ to `outer`.
+    fn add_circulation(&mut self, model: &Model<'_, R>) {
         let (poses, head) = (Poses(self.poses), model.head);
         if !head.plan.circulation {
             return;
@@ -119,15 +120,13 @@ impl<R: Real> Work<'_, R> {
         let density = head.fluid_density;
         if head.plan.formulation == Formulation::Kirchhoff {
             if head.gyroscopic {
-                add_lone_circulation(model, poses, self.qd, self.force);
+                add_lone_circulation(model, poses, self.qd, self.outer);
             }
             return;
         }
         let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
         circulation::solve(model, poses, &system, &mut flow);
-        if energy {
-            circulation::add_energy_gradient(model, poses, &system, &mut flow, &mut scratch, density, self.force);
-        }
+        circulation::add_energy_gradient(model, poses, &system, &mut flow, &mut scratch, density, self.outer);
         if head.gyroscopic {
             circulation::add_gyroscopic_force(
                 model,
@@ -140,7 +139,7 @@ impl<R: Real> Work<'_, R> {
                 self.adjoint,
                 self.spare,
                 density,
-                self.force,
+                self.outer,
             );
         }
     }
@@ -189,8 +188,9 @@ impl<R: Real> Work<'_, R> {
             *dds = R::zero();
         }
         accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.drift);
+        self.outer_forces(model);
         self.fluid_force(model, Inertia::Drift);
-        self.add_outer_forces(model);
+        axpy(self.force, R::one(), self.outer);
         add_body_inertia(model, self.drift, self.force);
         project(model, self.s, self.q, self.force, self.generalized);
         let rhs_at = n * n;
@@ -216,7 +216,7 @@ impl<R: Real> Work<'_, R> {
     /// The forces that drive every coordinate, ν = (∂F/∂s)ᵀ [M q̈ + f], into `generalized`. After [`Work::accelerate`].
     pub(crate) fn drive_forces(&mut self, model: &Model<'_, R>) {
         self.fluid_force(model, Inertia::Accelerations);
-        self.add_outer_forces(model);
+        axpy(self.force, R::one(), self.outer);
         add_body_inertia(model, self.qdd, self.force);
         project(model, self.s, self.q, self.force, self.generalized);
     }

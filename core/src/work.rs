@@ -70,6 +70,7 @@ buffers! {
         momentum: 3 * d.links,
         gradient: 3 * d.links,
         force: 3 * d.links,
+        outer: 3 * d.links,
         spare: 3 * d.links,
         matrix: d.ld * (d.unknowns + d.columns),
         pivots: d.unknowns,

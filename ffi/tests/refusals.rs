@@ -284,6 +284,13 @@ fn memory_that_is_null_misaligned_or_short_is_refused_untouched() {
             Status::NullPointer.code()
         );
         assert!(mem == before && model.is_null());
+        // The definition lies in the memory that it would be compiled into.
+        let inside = first.wrapping_add(256).cast::<SceneDef<f64>>();
+        unsafe { inside.write(std::ptr::read(def.get())) };
+        let before = mem.clone();
+        let got = unsafe { model_init(mem.as_mut_ptr().cast(), need.size, inside, &mut model, &mut diag) };
+        assert_eq!(got, Status::Aliasing.code());
+        assert!(mem == before && model.is_null());
 
         let (_model_memory, model) = compile(def);
         let mut sim = null_mut();
@@ -316,6 +323,36 @@ fn memory_that_is_null_misaligned_or_short_is_refused_untouched() {
             assert_eq!(sim_init(first.cast(), len, null(), &adams(), &mut sim, &mut diag), Status::NullPointer.code());
         }
         assert!(mem == before && sim.is_null());
+        // The simulation would lie on its model.
+        let mut both = memory(1 << 20);
+        let mut model = null_mut();
+        assert_eq!(unsafe { model_init(both.as_mut_ptr().cast(), 1 << 20, def.get(), &mut model, &mut diag) }, 0);
+        let before = both.clone();
+        let at = both.as_mut_ptr().wrapping_add(8);
+        let got = unsafe { sim_init(at.cast(), (1 << 20) - 64, model, &adams(), &mut sim, &mut diag) };
+        assert_eq!(got, Status::Aliasing.code());
+        assert!(both == before && sim.is_null());
+    });
+}
+
+#[test]
+fn simulations_of_one_model_on_threads_give_the_bits_of_one_alone() {
+    with_scene(|def, _, _| {
+        let (_model_memory, model) = compile(def);
+        let run = |model: *mut ModelHandle<f64>| {
+            let (_memory, sim) = simulate(model, &adams());
+            assert_eq!(unsafe { sim_advance(sim, 0.2, null_mut()) }, 0);
+            state(model, sim)
+        };
+        let alone = run(model);
+        let address = model.expose_provenance();
+        std::thread::scope(|scope| {
+            let threads: Vec<_> =
+                (0..4).map(|_| scope.spawn(move || run(std::ptr::with_exposed_provenance_mut(address)))).collect();
+            for thread in threads {
+                assert_eq!(thread.join().unwrap(), alone);
+            }
+        });
     });
 }
 
