@@ -114,6 +114,7 @@ template <class R> struct Api;
         static constexpr auto sim_create = &P##_sim_create;                                                                    \
         static constexpr auto sim_free = &P##_sim_free;                                                                        \
         static constexpr auto sim_copy = &P##_sim_copy;                                                                        \
+        static constexpr auto sim_model = &P##_sim_model;                                                                      \
         static constexpr auto sim_time = &P##_sim_time;                                                                        \
         static constexpr auto sim_positions = &P##_sim_positions;                                                              \
         static constexpr auto sim_velocities = &P##_sim_velocities;                                                            \
@@ -393,6 +394,13 @@ public:
     typename Api::Sim *get() noexcept { return sim_; }
     const typename Api::Sim *get() const noexcept { return sim_; }
 
+    /** The handle of its model; null if there is no simulation. */
+    const typename Api::Model *model() const
+    {
+        const typename Api::Model *out = nullptr;
+        detail::done(Api::sim_model(sim_, &out));
+        return out;
+    }
     /** Goes on exactly as another simulation of the same model. */
     nekton_status copy_from(const BasicSim &other, nekton_diag *diag = nullptr)
     {

@@ -44,6 +44,7 @@ template <class R> int run()
     moved = std::move(sim);
     CHECK(!model && !sim && moved && moved_model);
     CHECK(moved.advance(R(1)) == NEKTON_OK && moved.time() == R(1));
+    CHECK(moved.model() == moved_model.get());
     // A copy goes on exactly alike.
     nekton::BasicSim<R> other(moved_model, method);
     CHECK(other.copy_from(moved) == NEKTON_OK);

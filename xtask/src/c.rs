@@ -63,6 +63,7 @@ pub fn add(steps: &mut Steps) {
     if ask(Command::new("clang++").arg("--version")).is_ok() {
         step(steps, "C++ wrapper by clang", &[], || wrapper("clang++"));
     }
+    step(steps, "static library next to another one in Rust", &[CC], neighbours);
     step(steps, "program of the README by CMake", &[CC, CMAKE, ("make", "make")], consumer_by_cmake);
     step(steps, "program of the README by pkg-config", &[CC, ("pkg-config", "pkg-config")], consumer_by_pkg_config);
     step(steps, "commands of examples-c/README.md", &[CC], readme_of_examples);
@@ -217,11 +218,15 @@ fn valgrind() -> Result<(), String> {
             return Err(format!("{name} used the heap: {usage}"));
         }
     }
-    Ok(())
+    // No two threads touch the same memory without an order.
+    let mut threads = Command::new("valgrind");
+    threads.args(["--quiet", "--tool=helgrind", "--error-exitcode=9"]).arg(folder.join("parallel_rollouts"));
+    ask(&mut threads).map(drop)
 }
 
 /// Every member function, with and without exceptions.
 fn wrapper(compiler: &str) -> Result<(), String> {
+    wrapped()?;
     let folder = fresh("wrapper")?;
     for mode in ["-fexceptions", "-fno-exceptions", "-DNEKTON_NO_EXCEPTIONS"] {
         let program = folder.join("wrapper");
@@ -232,6 +237,33 @@ fn wrapper(compiler: &str) -> Result<(), String> {
         ask(&mut Command::new(&program))?;
     }
     Ok(())
+}
+
+/// Every function of the interface but those without an object has its place in the wrapper.
+fn wrapped() -> Result<(), String> {
+    let wrapper = read(&root().join("include/nekton.hpp"))?;
+    let symbols = read(&root().join(SYMBOLS))?;
+    for name in symbols.lines().filter_map(|name| name.strip_prefix("nekton_")) {
+        let free = ["abi_version", "capabilities", "status_text", "status_name", "diag_text"].contains(&name);
+        if !free && !wrapper.contains(&format!("&P##_{name};")) {
+            return Err(format!("the wrapper does not know nekton_{name}"));
+        }
+    }
+    Ok(())
+}
+
+/// Two Rust libraries of the same compiler have hundreds of symbols in common; all of both are linked.
+fn neighbours() -> Result<(), String> {
+    let folder = fresh("neighbours")?;
+    let sources = root().join("tests/c");
+    let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or("rustc".into()));
+    rustc.args(["--edition=2024", "--crate-type=staticlib", "-Copt-level=2", "-o"]).arg(folder.join("libother.a"));
+    ask(rustc.arg(sources.join("other.rs")))?;
+    let mut cc = Command::new("cc");
+    cc.args(WARNINGS).arg("-std=c99").arg(sources.join("neighbours.c")).arg("-I").arg(prefix().join("include"));
+    cc.arg("-Wl,--whole-archive").arg(prefix().join("lib/libnekton.a")).arg(folder.join("libother.a"));
+    ask(cc.args(["-Wl,--no-whole-archive", "-lm", "-lpthread", "-ldl", "-o"]).arg(folder.join("neighbours")))?;
+    ask(&mut Command::new(folder.join("neighbours"))).map(drop)
 }
 
 /// The first block of a language in a Markdown file.
