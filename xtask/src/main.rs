@@ -2,6 +2,9 @@
 
 mod archive;
 mod bare;
+mod c;
+mod dist;
+mod expected;
 mod firmware;
 mod fuzz;
 mod header;
@@ -19,6 +22,9 @@ commands:
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
+  c          what users of C and C++ meet: examples, wrapper, installed package
+  dist --prefix P
+             headers, libraries, pkg-config file and CMake package into folder P
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -31,6 +37,8 @@ fn main() -> ExitCode {
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),
         ["symbols"] => archive::write_symbols(),
+        ["c"] => c::run(),
+        ["dist", "--prefix", prefix] => dist::run(prefix),
         ["header"] => header::run(),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");

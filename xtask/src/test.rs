@@ -1,6 +1,7 @@
 //! `cargo xtask test`.
 
 use crate::bare::{CORTEX_M, Compiler, compiler, installed};
+use crate::c;
 use crate::firmware;
 use crate::steps::{Outcome, Steps, cargo, execute, require, root};
 use std::path::PathBuf;
@@ -41,6 +42,7 @@ pub fn run() -> ExitCode {
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     );
+    c::add(&mut steps);
     scenes(&mut steps);
     steps.finish()
 }
