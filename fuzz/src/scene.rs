@@ -157,7 +157,7 @@ impl<R: Number> Store<R> {
 }
 
 fn nodes(bytes: &mut Bytes<'_>) -> usize {
-    let ordinary = 8 + 2 * bytes.below(8);
+    let ordinary = 8 + 2 * bytes.below(4);
     bytes.count(ordinary)
 }
 

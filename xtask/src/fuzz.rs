@@ -5,8 +5,7 @@ use std::process::{Command, ExitCode};
 
 /// What libFuzzer needs to see where a run goes, and the sanitizer that sees every access outside of an object.
 const INSTRUMENTED: &str = "-Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
-    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
-    -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing -Zsanitizer=address";
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table --cfg fuzzing -Zsanitizer=address";
 
 /// Guided by coverage where a nightly compiler is installed, else random.
 pub fn run(minutes: &str) -> ExitCode {
@@ -42,14 +41,16 @@ fn guided(seconds: u64) -> Outcome {
     }
     let mut build = Command::new("cargo");
     build.args(["+nightly", "build", "--package", "nekton-fuzz", "--features", "libfuzzer", "--bin", "guided"]);
-    build.args(["--target", host, "--target-dir"]).arg(&target).env("RUSTFLAGS", INSTRUMENTED).current_dir(root());
+    build.args(["--release", "--target", host, "--target-dir"]).arg(&target).current_dir(root());
+    build.env("RUSTFLAGS", INSTRUMENTED);
+    build.env("CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS", "true").env("CARGO_PROFILE_RELEASE_LTO", "off");
     // Set by the cargo that runs this command; the nightly one must choose its own.
     build.env_remove("CARGO").env_remove("RUSTC").env_remove("RUSTUP_TOOLCHAIN");
     match execute(&mut build) {
         Outcome::Passed => {}
         outcome => return outcome,
     }
-    let mut run = Command::new(target.join(host).join("debug/guided"));
+    let mut run = Command::new(target.join(host).join("release/guided"));
     run.arg(&corpus).arg(&findings).args(["-max_len=1500", "-timeout=60"]);
     run.arg(format!("-max_total_time={seconds}")).arg(format!("-artifact_prefix={}/", findings.display()));
     execute(&mut run)
