@@ -91,6 +91,7 @@ fn archive(whole: &Path, work: &Path, result: &Path) -> Result<(), String> {
     std::fs::create_dir_all(work).map_err(|error| format!("{}: {error}", work.display()))?;
     let (linked, object) = (work.join("whole.o"), work.join("nekton.o"));
     let symbols = root().join(SYMBOLS);
+    // Groups are dissolved: of a group that another library has as well, the linker would drop one, whose names are hidden.
     let mut link = Command::new("ld");
     link.args(["-r", "--gc-sections", "--force-group-allocation", "-o"]).arg(&linked);
     for name in read(&symbols)?.lines() {
