@@ -113,7 +113,13 @@ pub fn require(programs_and_packages: &[(&str, &str)]) -> Result<(), String> {
         return Ok(());
     }
     if output("id", &["-u"]).as_deref() == Some("0") && output("sh", &["-c", "command -v apt-get"]).is_some() {
-        let _ = execute(Command::new("apt-get").args(["install", "--yes", "--no-install-recommends"]).args(&packages));
+        let install =
+            || execute(Command::new("apt-get").args(["install", "--yes", "--no-install-recommends"]).args(&packages));
+        // On a fresh machine the package lists are missing or stale.
+        if !matches!(install(), Outcome::Passed) {
+            let _ = execute(Command::new("apt-get").args(["update", "--quiet"]));
+            let _ = install();
+        }
     }
     match missing() {
         rest if rest.is_empty() => Ok(()),
