@@ -1,8 +1,9 @@
 //! Examples, wrapper and installed package, as users of C and C++ meet them.
 
-use crate::dist::{SYMBOLS, ask, install, read, soname};
+use crate::archive::SYMBOLS;
+use crate::dist::{install, soname};
 use crate::expected::{Lines, lines, numbers};
-use crate::steps::{Outcome, Steps, require, root};
+use crate::steps::{Outcome, Steps, ask, read, require, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
