@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 int main(void);
-void start(void);
+void _start(void);
 void *memcpy(void *to, const void *from, size_t n);
 void *memmove(void *to, const void *from, size_t n);
 void *memset(void *to, int byte, size_t n);
@@ -85,7 +85,7 @@ uint32_t board_stack(void)
 }
 
 /* The stack of a new process is aligned otherwise than a function expects. */
-__attribute__((force_align_arg_pointer, noreturn)) void start(void)
+__attribute__((force_align_arg_pointer, noreturn)) void _start(void)
 {
     for (;;) {
         system_call(60, main(), 0, 0); /* exit */
