@@ -2,13 +2,13 @@
 //! into one object of which only nekton's own symbols can be seen.
 
 use crate::bare::Compiler;
-use crate::steps::{cargo, root};
+use crate::steps::{ask, cargo, read, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// Symbols that a program links against, one per line.
-const SYMBOLS: &str = "include/nekton.symbols";
+pub const SYMBOLS: &str = "include/nekton.symbols";
 /// What the compiler may take from the C library, or from the program.
 const MEMORY_FUNCTIONS: [&str; 5] = ["memcpy", "memmove", "memset", "memcmp", "bcmp"];
 
@@ -26,7 +26,8 @@ pub struct Machine {
 }
 
 /// This computer, without its operating system.
-pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "", format: "elf64-x86-64" };
+pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "", format: FORMAT };
+const FORMAT: &str = if cfg!(target_arch = "aarch64") { "elf64-littleaarch64" } else { "elf64-x86-64" };
 
 impl Machine {
     pub fn tool(&self, name: &str) -> Command {
@@ -36,17 +37,6 @@ impl Machine {
     /// A folder for what is made for this machine.
     pub fn place(&self) -> PathBuf {
         root().join("target").join(self.folder)
-    }
-}
-
-/// What a command prints. The error is the command's own.
-pub fn ask(command: &mut Command) -> Result<String, String> {
-    let name = command.get_program().to_string_lossy().into_owned();
-    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
-    if output.status.success() {
-        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
-    } else {
-        Err(format!("{name}: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr)))
     }
 }
 
@@ -84,7 +74,7 @@ fn offered(machine: &Machine, archive: &Path) -> Result<BTreeSet<String>, String
 
 /// The committed list.
 fn promised() -> Result<BTreeSet<String>, String> {
-    let text = std::fs::read_to_string(root().join(SYMBOLS)).map_err(|error| format!("{SYMBOLS}: {error}"))?;
+    let text = read(&root().join(SYMBOLS))?;
     Ok(text.lines().map(str::to_string).collect())
 }
 
@@ -101,10 +91,13 @@ pub struct Prelinked {
 
 /// Prelinks an archive into `libnekton.a` in the machine's folder.
 pub fn prelink(machine: &Machine, archive: &Path) -> Result<Prelinked, String> {
-    let (whole, object) = (machine.place().join("whole.o"), machine.place().join("nekton.o"));
-    let result = machine.place().join("libnekton.a");
+    let place = machine.place();
+    std::fs::create_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))?;
+    let (whole, object, result) = (place.join("whole.o"), place.join("nekton.o"), place.join("libnekton.a"));
+    // Groups of sections are dissolved: of a group that another library has as well, a linker would drop ours or theirs, and
+    // ours has hidden names.
     let mut link = machine.tool("ld");
-    link.args(["-r", "--gc-sections", "-o"]).arg(&whole);
+    link.args(["-r", "--gc-sections", "--force-group-allocation", "-o"]).arg(&whole);
     for name in promised()? {
         link.args(["-u", &name]);
     }

@@ -1,8 +1,9 @@
 //! Examples, wrapper and installed package, as users of C and C++ meet them.
 
-use crate::dist::{SYMBOLS, ask, install, read, soname};
+use crate::archive::SYMBOLS;
+use crate::dist::{install, soname};
 use crate::expected::{Lines, lines, numbers};
-use crate::steps::{Outcome, Steps, require, root};
+use crate::steps::{Outcome, Steps, ask, read, require, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -134,7 +135,12 @@ fn compare(name: &str, run: &mut Command) -> Result<(), String> {
 fn compile(source: &Path, cxx: bool, shared: bool, out: &Path) -> Result<(), String> {
     let lib = prefix().join("lib");
     let mut compiler = Command::new(if cxx { "c++" } else { "cc" });
-    compiler.args(WARNINGS).args(if cxx { ["-std=c++17", "-xc++"] } else { ["-std=c99", "-xc"] });
+    // Contracted products and sums would change the last bits of what a program computes itself.
+    compiler.args(WARNINGS).arg("-ffp-contract=off").args(if cxx {
+        ["-std=c++17", "-xc++"]
+    } else {
+        ["-std=c99", "-xc"]
+    });
     compiler.arg(source).args(["-xnone", "-I"]).arg(prefix().join("include"));
     if shared {
         compiler.arg("-L").arg(&lib).args(["-lnekton", &format!("-Wl,-rpath,{}", lib.display())]);
@@ -202,26 +208,35 @@ fn examples_by_cmake(prefix: &Path) -> Result<(), String> {
 /// No invalid access, no use of what was never written, nothing leaked; no call of the heap where none is allowed.
 fn valgrind() -> Result<(), String> {
     let folder = fresh("valgrind")?;
-    for (name, source) in sources()? {
-        let program = folder.join(&name);
-        compile(&source, source.extension().is_some_and(|extension| extension == "cpp"), false, &program)?;
-        let log = folder.join(format!("{name}.log"));
-        let mut run = Command::new("valgrind");
-        run.args(["--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]);
-        run.arg(format!("--log-file={}", log.display())).arg(&program);
-        let ran = ask(&mut run);
-        let log = read(&log)?;
-        ran.map_err(|why| format!("{why}\n{log}"))?;
-        let usage = log.lines().find_map(|line| line.split_once("total heap usage: ")).map_or("", |(_, usage)| usage);
-        println!("{name}: {usage}");
-        if WITHOUT_HEAP.contains(&name.as_str()) && !usage.starts_with("0 allocs, 0 frees") {
-            return Err(format!("{name} used the heap: {usage}"));
-        }
+    let sources = sources()?;
+    for (name, source) in &sources {
+        let cxx = source.extension().is_some_and(|extension| extension == "cpp");
+        compile(source, cxx, false, &folder.join(name))?;
     }
+    // Programs are slow there, so they run side by side.
+    std::thread::scope(|scope| {
+        let runs: Vec<_> = sources.iter().map(|(name, _)| scope.spawn(|| memory_checked(name, &folder))).collect();
+        runs.into_iter().try_for_each(|run| run.join().map_err(|_| "a check ended early")?)
+    })?;
     // No two threads touch the same memory without an order.
     let mut threads = Command::new("valgrind");
     threads.args(["--quiet", "--tool=helgrind", "--error-exitcode=9"]).arg(folder.join("parallel_rollouts"));
     ask(&mut threads).map(drop)
+}
+
+fn memory_checked(name: &str, folder: &Path) -> Result<(), String> {
+    let log = folder.join(format!("{name}.log"));
+    let mut run = Command::new("valgrind");
+    run.args(["--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all"]);
+    let ran = ask(run.arg(format!("--log-file={}", log.display())).arg(folder.join(name)));
+    let log = read(&log)?;
+    ran.map_err(|why| format!("{why}\n{log}"))?;
+    let usage = log.lines().find_map(|line| line.split_once("total heap usage: ")).map_or("", |(_, usage)| usage);
+    println!("{name}: {usage}");
+    if WITHOUT_HEAP.contains(&name) && !usage.starts_with("0 allocs, 0 frees") {
+        return Err(format!("{name} used the heap: {usage}"));
+    }
+    Ok(())
 }
 
 /// Every member function, with and without exceptions.
@@ -346,4 +361,28 @@ fn readme_of_examples() -> Result<(), String> {
     let printed = ask(&mut shell)?;
     let expected = lines("swimmer_prescribed").unwrap_or_default();
     if numbers(&printed).ends_with(&expected) { Ok(()) } else { Err(format!("it printed {printed}")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printing(lines: &Lines) -> Command {
+        let text: Vec<String> = lines.iter().flatten().map(f64::to_string).collect();
+        let mut command = Command::new("printf");
+        command.arg("%s %s %s %s\\n").args(text);
+        command
+    }
+
+    #[test]
+    fn a_difference_in_the_last_bit_or_a_missing_line_is_noticed() {
+        let name = "one_body_static";
+        let good = lines(name).unwrap();
+        assert_eq!(compare(name, &mut printing(&good)), Ok(()));
+        let mut off = good.clone();
+        off[9][3] = off[9][3].next_up();
+        assert!(compare(name, &mut printing(&off)).unwrap_err().contains("line 10"));
+        assert!(compare(name, &mut printing(&good[..9].to_vec())).is_err());
+        assert!(compare(name, &mut Command::new("false")).is_err());
+    }
 }

@@ -1,12 +1,13 @@
 //! `cargo xtask dist --prefix P`: headers, both libraries, pkg-config file and CMake package in an installed tree that can be
 //! moved as a whole.
 
-use crate::steps::{cargo, root};
+use crate::archive::{HERE, Machine, prelink};
+use crate::steps::{cargo, read, root};
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 
-/// The functions of the interface, one per line.
-pub const SYMBOLS: &str = "include/nekton.symbols";
+/// This computer, with its operating system.
+const DESKTOP: Machine = Machine { folder: "desktop", ..HERE };
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub fn run(prefix: &str) -> ExitCode {
@@ -20,18 +21,6 @@ pub fn run(prefix: &str) -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// Runs a command and gives what it prints; the error names the command and what it says.
-pub fn ask(command: &mut Command) -> Result<String, String> {
-    let line = format!("{command:?}");
-    let output = command.output().map_err(|error| format!("{line}: {error}"))?;
-    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    if output.status.success() { Ok(out.into_owned()) } else { Err(format!("{line}: {}\n{out}{err}", output.status)) }
-}
-
-pub fn read(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn copy(from: &Path, to: &Path) -> Result<(), String> {
@@ -71,7 +60,9 @@ pub fn install(prefix: &Path) -> Result<(), String> {
     let _ = std::fs::remove_file(&link);
     #[cfg(unix)]
     std::os::unix::fs::symlink(&soname, &link).map_err(|error| format!("{}: {error}", link.display()))?;
-    archive(&target.join("release/libnekton_ffi.a"), &target.join("release/prelink"), &lib.join("libnekton.a"))?;
+    // With the standard library inside, but hidden, it can be linked next to other libraries written in Rust.
+    let object = prelink(&DESKTOP, &target.join("release/libnekton_ffi.a"))?;
+    copy(&object.archive, &lib.join("libnekton.a"))?;
 
     let major_minor = VERSION.rsplit_once('.').map_or(VERSION, |(rest, _)| rest);
     let files = [("nekton.pc", &pkg_config), ("nekton-config.cmake", &cmake), ("nekton-config-version.cmake", &cmake)];
@@ -83,23 +74,4 @@ pub fn install(prefix: &Path) -> Result<(), String> {
         std::fs::write(folder.join(name), text).map_err(|error| format!("{name}: {error}"))?;
     }
     Ok(())
-}
-
-/// The static library as one object in which only the interface's functions are global, so that it can be linked next to
-/// other libraries written in Rust. What no function needs is left out.
-fn archive(whole: &Path, work: &Path, result: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(work).map_err(|error| format!("{}: {error}", work.display()))?;
-    let (linked, object) = (work.join("whole.o"), work.join("nekton.o"));
-    let symbols = root().join(SYMBOLS);
-    let mut link = Command::new("ld");
-    link.args(["-r", "--gc-sections", "--force-group-allocation", "-o"]).arg(&linked);
-    for name in read(&symbols)?.lines() {
-        link.args(["-u", name]);
-    }
-    ask(link.arg(whole))?;
-    let mut hide = Command::new("objcopy");
-    hide.arg("--keep-global-symbols").arg(&symbols).arg("--strip-unneeded");
-    ask(hide.args(["--remove-section", ".llvmbc", "--remove-section", ".llvmcmd"]).arg(&linked).arg(&object))?;
-    let _ = std::fs::remove_file(result);
-    ask(Command::new("ar").arg("rcsD").arg(result).arg(&object)).map(drop)
 }

@@ -1,8 +1,8 @@
 //! The programs without an operating system: built, run, compared with the same program on this computer, and measured.
 
-use crate::archive::{HERE, Machine, ask, finish, proven};
+use crate::archive::{HERE, Machine, finish, proven};
 use crate::bare::{CORTEX_M, Compiler, compiler};
-use crate::steps::{Outcome, cargo, output, require, root};
+use crate::steps::{Outcome, ask, cargo, output, require, root};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};

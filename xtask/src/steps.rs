@@ -95,6 +95,19 @@ pub fn execute(command: &mut Command) -> Outcome {
     }
 }
 
+/// Runs a command and gives what it prints; the error names the command and what it says.
+pub fn ask(command: &mut Command) -> Result<String, String> {
+    let line = format!("{command:?}");
+    let output = command.output().map_err(|error| format!("{line}: {error}"))?;
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if output.status.success() { Ok(out.into_owned()) } else { Err(format!("{line}: {}\n{out}{err}", output.status)) }
+}
+
+/// A file's text; the error names the file.
+pub fn read(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
 /// What a command prints, or `None` when it fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).stderr(Stdio::null()).output().ok()?;
