@@ -181,6 +181,10 @@ impl<'a, R: Real> Model<'a, R> {
             nodes: self.boundaries.get(self.head.plan.walls + i)?.nodes,
         })
     }
+    /// Number of channels (`Signal::Channel`), in the order of the coordinates.
+    pub fn channel_count(&self) -> usize {
+        self.head.channels
+    }
     /// Number of joints of all bodies.
     pub fn joint_count(&self) -> usize {
         self.joints().count()

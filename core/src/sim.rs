@@ -71,6 +71,13 @@ pub struct SimHead<R> {
     pub(crate) started: bool,
 }
 
+impl<R> SimHead<R> {
+    /// To be called when what the simulation remembers was put back (see [`Sim::remembered`]): the scratch no longer belongs to it.
+    pub fn forget_evaluation(&mut self) {
+        self.fresh = false;
+    }
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateDims {
     state: usize,
@@ -205,6 +212,15 @@ impl<'a, R: Real> Sim<'a, R> {
         SimRequirement::of(model.head, model.coordinates.len()).ok_or(Status::SizeOverflow.into())
     }
 
+    /// How many of the reals, from the first on, a simulation remembers from one call to the next (the rest is scratch): with a
+    /// copy of these and of the head, a simulation is put back to what it was, or made equal to another one of its model.
+    ///
+    /// # Errors
+    /// `SizeOverflow`.
+    pub fn remembered(model: &Model<'_, R>) -> Result<usize> {
+        State::<R>::len(&StateDims::of(model.head, model.coordinates.len())).ok_or(Status::SizeOverflow.into())
+    }
+
     /// Checks a method; the head of a simulation that has not begun.
     ///
     /// # Errors
@@ -286,7 +302,10 @@ impl<'a, R: Real> Sim<'a, R> {
         let len = State::<R>::len(&dims).ok_or(Status::SizeOverflow)?;
         let (state, work) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
         let work = Work::split(&Dims::of(model.head, model.coordinates.len()), work)?;
-        Ok(Sim { model, head, state: State::split(&dims, state)?, work })
+        let state = State::split(&dims, state)?;
+        // What is remembered may have been put back (see `remembered`).
+        copy(work.channels, state.commands);
+        Ok(Sim { model, head, state, work })
     }
 
     /// The model.

@@ -16,6 +16,20 @@ macro_rules! statuses {
             pub const fn code(self) -> i32 { self as i32 }
             /// One line of text, without place or value.
             pub const fn text(self) -> &'static str { match self { $(Status::$name => $text,)* } }
+            /// The text followed by a zero byte, as C wants it.
+            #[doc(hidden)]
+            pub const fn text_with_nul(self) -> &'static str {
+                match self { $(Status::$name => concat!($text, "\0"),)* }
+            }
+            /// The name followed by a zero byte, as C wants it.
+            #[doc(hidden)]
+            pub const fn name_with_nul(self) -> &'static str {
+                match self { $(Status::$name => concat!(stringify!($name), "\0"),)* }
+            }
+            /// The status of this number.
+            pub fn from_code(code: i32) -> Option<Status> {
+                Status::ALL.iter().copied().find(|s| s.code() == code)
+            }
             /// The name as written in the list.
             pub const fn name(self) -> &'static str { match self { $(Status::$name => stringify!($name),)* } }
         }
@@ -48,6 +62,13 @@ statuses! {
     Length = -21, "a buffer has the wrong length";
     Unsupported = -22, "not available for this scene or this build";
     Internal = -23, "an internal consistency check failed (please report it)";
+    NullPointer = -24, "a pointer that must not be NULL is NULL";
+    Misaligned = -25, "memory is not aligned as required";
+    AbiVersion = -26, "the caller was compiled for another version of the interface";
+    BadHandle = -27, "this is no object of this library: not initialized, freed, or its model was replaced";
+    OutOfMemory = -28, "no memory could be had";
+    UnknownKind = -29, "a kind or flag has no such value";
+    Aliasing = -30, "two buffers overlap that must not";
 }
 
 /// Where in the scene something is wrong. Indices count from 0; walls and bodies are counted apart.

@@ -1,5 +1,6 @@
 //! Developer commands: `cargo xtask test` is the whole test run.
 
+mod header;
 mod steps;
 mod test;
 
@@ -9,6 +10,7 @@ const USAGE: &str = "usage: cargo xtask <command>
 
 commands:
   test    everything: format, lints, builds without std and without heap, tests, documentation, scenes
+  header  include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
 fn main() -> ExitCode {
@@ -16,6 +18,7 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["header"] => header::run(),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             ExitCode::SUCCESS

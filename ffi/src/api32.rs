@@ -1,0 +1,558 @@
+//! Made from api64.rs by `cargo xtask header`: the same in single precision.
+
+use crate::diag::{report, report_notice};
+use crate::types::*;
+use crate::{model, sim};
+use core::ffi::c_void;
+use core::ptr::null_mut;
+
+/// Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as
+/// nekton32_scene_def_init(&def, sizeof def, NEKTON_ABI_VERSION).
+/// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION (header and library do not fit). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_scene_def_init(
+    def: *mut SceneDef<f32>,
+    struct_size: usize,
+    abi_version: u32,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::init_scene(def, struct_size, abi_version)) }
+}
+
+/// Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set.
+/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_wall_def_init(def: *mut WallDef<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::init_wall(def)) }
+}
+
+/// Fills a body definition with defaults: free, at rest at the origin; the links are still to be set.
+/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_body_def_init(def: *mut BodyDef<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::init_body(def)) }
+}
+
+/// Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge locked at 0.
+/// The shape is still to be set.
+/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_link_def_init(def: *mut LinkDef<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::init_link(def)) }
+}
+
+/// Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
+/// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT, BAD_PARENT,
+/// MASSLESS, SIZE_OVERFLOW. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_req(
+    def: *const SceneDef<f32>,
+    req: *mut nekton_req,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, model::req(def, req)) }
+}
+
+/// Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and needs no
+/// other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the first; all by
+/// nekton32_model_notice) when something was mended.
+/// Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION, OUT_OF_RANGE,
+/// BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_init(
+    mem: *mut c_void,
+    len: usize,
+    def: *const SceneDef<f32>,
+    model: *mut *mut ModelHandle<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report_notice(diag, model::init(mem.cast(), len, def, model, false)) }
+}
+
+/// The same in memory from the heap; to be given to nekton32_model_free.
+/// Errors: as nekton32_model_init; OUT_OF_MEMORY; UNSUPPORTED without NEKTON_CAP_ALLOC. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_create(
+    def: *const SceneDef<f32>,
+    model: *mut *mut ModelHandle<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report_notice(diag, model::create(def, model)) }
+}
+
+/// Frees a model from nekton32_model_create (NULL: does nothing), after its simulations.
+/// Errors: BAD_HANDLE if it is not from there. Any thread, once.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_free(model: *mut ModelHandle<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::free(model)) }
+}
+
+/// What the model computes, how long its arrays are, and what it costs.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_plan(model: *const ModelHandle<f32>, plan: *mut nekton_plan) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::plan(model, plan)) }
+}
+
+/// Facts about a link, counted through all bodies.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_link(
+    model: *const ModelHandle<f32>,
+    link: usize,
+    info: *mut LinkOut<f32>,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::link(model, link, info)) }
+}
+
+/// Facts about a joint, counted in the order of the links they move.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_joint(
+    model: *const ModelHandle<f32>,
+    joint: usize,
+    info: *mut nekton_joint_info,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::joint(model, joint, info)) }
+}
+
+/// What set-up noticed and mended, such as an outline that was turned round.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (there are as many as nekton_plan tells). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_notice(
+    model: *const ModelHandle<f32>,
+    notice: usize,
+    place: *mut nekton_place,
+    status: *mut nekton_status,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::notice(model, notice, place, status)) }
+}
+
+/// Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
+/// the world.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, OUT_OF_RANGE (no such place). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_outline_point(
+    model: *const ModelHandle<f32>,
+    place: *const nekton_place,
+    t: f32,
+    point: *mut f32,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::outline_point(model, place, t, point.cast())) }
+}
+
+/// Memory that nekton32_sim_init needs.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, SIZE_OVERFLOW. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_req(
+    model: *const ModelHandle<f32>,
+    method: *const MethodDef<f32>,
+    req: *mut nekton_req,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::req(model, method, req)) }
+}
+
+/// Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which must stay, like
+/// the model, as long as the simulation is used, and needs no other clean-up. *sim is set on success only.
+/// Errors: as nekton32_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem holds no
+/// simulation. Any thread; the simulation is then used by one thread at a time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_init(
+    mem: *mut c_void,
+    len: usize,
+    model: *const ModelHandle<f32>,
+    method: *const MethodDef<f32>,
+    sim: *mut *mut SimHandle<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::init(mem.cast(), len, model, method, sim, false)) }
+}
+
+/// The same in memory from the heap; to be given to nekton32_sim_free.
+/// Errors: as nekton32_sim_init; OUT_OF_MEMORY; UNSUPPORTED without NEKTON_CAP_ALLOC. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_create(
+    model: *const ModelHandle<f32>,
+    method: *const MethodDef<f32>,
+    sim: *mut *mut SimHandle<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::create(model, method, sim)) }
+}
+
+/// Frees a simulation from nekton32_sim_create (NULL: does nothing).
+/// Errors: BAD_HANDLE if it is not from there. Any thread, once.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_free(sim: *mut SimHandle<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::free_sim(sim)) }
+}
+
+/// Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past, channels, counters.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read from while nobody uses it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_copy(
+    to: *mut SimHandle<f32>,
+    from: *const SimHandle<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::assign(to, from)) }
+}
+
+/// The simulation's model.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_model(
+    sim: *const SimHandle<f32>,
+    model: *mut *const ModelHandle<f32>,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::model_of(sim, model)) }
+}
+
+/// Time of the state shown, s.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_time(sim: *const SimHandle<f32>, t: *mut f32) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::time(sim, t)) }
+}
+
+/// x, y, theta of every link's centre of mass; n = 3 links.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_positions(sim: *const SimHandle<f32>, q: *mut f32, n: usize) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::shown(sim, q, n, false)) }
+}
+
+/// Rates of x, y, theta of every link; n = 3 links.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_velocities(sim: *const SimHandle<f32>, qd: *mut f32, n: usize) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::shown(sim, qd, n, true)) }
+}
+
+/// Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the drives if
+/// anything is driven; n = state_len of the plan.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_get_state(
+    sim: *const SimHandle<f32>,
+    t: *mut f32,
+    y: *mut f32,
+    n: usize,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::get_state(sim, t, y, n)) }
+}
+
+/// Sets time and state as nekton32_sim_get_state gives them; the integrator starts anew.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as it was. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_set_state(
+    sim: *mut SimHandle<f32>,
+    t: f32,
+    y: *const f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::set_state(sim, t, y, n)) }
+}
+
+/// Forgets the integrator's past, as after a jump of the drives.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_restart(sim: *mut SimHandle<f32>) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::restart(sim)) }
+}
+
+/// One step of the method (ADAMS: one step of its own choice).
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the simulation is then as it was, bit for bit. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_step(sim: *mut SimHandle<f32>, diag: *mut nekton_diag) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::step(sim)) }
+}
+
+/// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is the step
+/// function of a controller: set channels, advance by a sample time, read the state.
+/// Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then as it was
+/// before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_advance(
+    sim: *mut SimHandle<f32>,
+    t_end: f32,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::advance(sim, t_end, t_end)) }
+}
+
+/// Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance when output is
+/// wanted at many times: ADAMS keeps its steps and interpolates.
+/// Errors: as nekton32_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_advance_dense(
+    sim: *mut SimHandle<f32>,
+    t_out: f32,
+    t_stop: f32,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
+}
+
+/// Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
+/// each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_set_channel(
+    sim: *mut SimHandle<f32>,
+    channel: usize,
+    from: *const f32,
+    to: *const f32,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::set_channel(sim, channel, from.cast(), to.cast())) }
+}
+
+/// Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton32_sim_get_state, n = state_len, not overlapping.
+/// The simulation's own state does not change.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE; ydot is then 0. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_rhs(
+    sim: *mut SimHandle<f32>,
+    t: f32,
+    y: *const f32,
+    ydot: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::rhs(sim, t, y, ydot, n)) }
+}
+
+/// u and du/dt of every joint; n = joints each.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_joint_values(
+    sim: *mut SimHandle<f32>,
+    u: *mut f32,
+    du: *mut f32,
+    n: usize,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::joints(sim, ("u", u), ("du", du), n, sim::joint_values)) }
+}
+
+/// Torque (slider: force) that drives every joint, and its power; n = joints each.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One evaluation if there was none since the last step. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_joint_torques(
+    sim: *mut SimHandle<f32>,
+    torque: *mut f32,
+    power: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::joints(sim, ("torque", torque), ("power", power), n, |s, a, b| s.joint_torques(a, b))) }
+}
+
+/// Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_accelerations(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.accelerations(out))) }
+}
+
+/// Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_mass_matrix(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.mass_matrix(out))) }
+}
+
+/// Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_added_mass(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.added_mass(out))) }
+}
+
+/// Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_christoffel(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.christoffel(out))) }
+}
+
+/// Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For inspection: (3 links)^2 forces.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_christoffel_tensor(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 3, |s, out| s.christoffel_tensor(out))) }
+}
+
+/// Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_buoyancy(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.buoyancy(out))) }
+}
+
+/// Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_repulsion(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.repulsion(out))) }
+}
+
+/// Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_circulation_gradient(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.circulation_gradient(out))) }
+}
+
+/// Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_gyroscopic(
+    sim: *mut SimHandle<f32>,
+    out: *mut f32,
+    n: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.gyroscopic(out))) }
+}
+
+/// Energies at the state shown. One evaluation if there was none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_energy(
+    sim: *mut SimHandle<f32>,
+    energy: *mut EnergyOut<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::energy(sim, energy)) }
+}
+
+/// Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_impulse(
+    sim: *mut SimHandle<f32>,
+    impulse: *mut f32,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::impulse(sim, impulse.cast())) }
+}
+
+/// Error indicators of the space discretization at the state shown. 12 links + 2 solves.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_resolution(
+    sim: *mut SimHandle<f32>,
+    resolution: *mut ResolutionOut<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::resolution(sim, resolution)) }
+}
+
+/// The smallest gap between boundaries of which one moves. No evaluation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NON_FINITE_STATE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_gap(
+    sim: *mut SimHandle<f32>,
+    gap: *mut GapOut<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::gap(sim, gap)) }
+}
+
+/// What the simulation did since its start.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_counters(
+    sim: *const SimHandle<f32>,
+    counters: *mut nekton_counters,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::counters(sim, counters)) }
+}

@@ -1,0 +1,178 @@
+//! C definitions as the core's: pointers become slices, kinds become variants. O(1) per item, nothing is copied but the item.
+
+use crate::diag::{Fault, Outcome};
+use crate::types::*;
+use nekton::scene::{
+    Body, CirculationModel, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape,
+    Signal, Wall, Window,
+};
+use nekton::{Method, Real, Status};
+
+/// A kind that does not exist.
+fn unknown<T>(what: &'static str, kind: i32) -> Outcome<T> {
+    Err(Fault::of(Status::UnknownKind, what, f64::from(kind)))
+}
+
+/// A flag: 0 or 1.
+fn flag(what: &'static str, value: i32) -> Outcome<bool> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => unknown(what, value),
+    }
+}
+
+/// A caller's array after all checks that are possible.
+pub(crate) unsafe fn array<'a, T>(what: &'static str, first: *const T, count: usize) -> Outcome<&'a [T]> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check_pointer(what, first)?;
+    if count > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(Fault::of(Status::SizeOverflow, what, count as f64));
+    }
+    // SAFETY: not NULL, aligned, of an addressable size; the caller promises that the items are there.
+    Ok(unsafe { core::slice::from_raw_parts(first, count) })
+}
+
+/// Refuses NULL and misaligned pointers.
+pub(crate) fn check_pointer<T>(what: &'static str, pointer: *const T) -> Outcome {
+    if pointer.is_null() {
+        return Err(Fault::of(Status::NullPointer, what, f64::NAN));
+    }
+    if !pointer.is_aligned() {
+        return Err(Fault::of(Status::Misaligned, what, align_of::<T>() as f64));
+    }
+    Ok(())
+}
+
+pub(crate) unsafe fn shape<R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'_, R>> {
+    let radius = if s.corner_radius == R::zero() { None } else { Some(s.corner_radius) };
+    // SAFETY: the caller's promise about the definition.
+    let points = || unsafe { array("points", s.points, s.point_count) };
+    Ok(match s.kind {
+        NEKTON_SHAPE_ELLIPSE => Shape::Ellipse { a: s.a, b: s.b },
+        NEKTON_SHAPE_STAR => Shape::Star { radius: s.radius, amplitude: s.amplitude, lobes: s.lobes as usize },
+        NEKTON_SHAPE_RECTANGLE => Shape::Rectangle { width: s.width, height: s.height, radius },
+        NEKTON_SHAPE_POLYGON => Shape::Polygon { vertices: points()?, radius },
+        NEKTON_SHAPE_CURVE => Shape::Curve { points: points()? },
+        kind => return unknown("shape.kind", kind),
+    })
+}
+
+const _: () = assert!(size_of::<HarmonicDef<f64>>() == size_of::<Harmonic<f64>>());
+const _: () = assert!(size_of::<HarmonicDef<f32>>() == size_of::<Harmonic<f32>>());
+
+pub(crate) unsafe fn signal<R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'_, R>> {
+    Ok(match s.kind {
+        NEKTON_SIGNAL_CONSTANT => Signal::Constant(s.value),
+        NEKTON_SIGNAL_HARMONIC => {
+            let WindowDef { from, to, ramp } = s.window;
+            let none = [from, to, ramp].iter().all(|x| *x == R::zero());
+            Signal::Harmonic {
+                // SAFETY: both types are four reals in C's layout; the caller's promise about the definition.
+                terms: unsafe { array("harmonics", s.harmonics.cast::<Harmonic<R>>(), s.harmonic_count) }?,
+                window: if none { None } else { Some(Window { from, to, ramp }) },
+            }
+        }
+        // SAFETY: the caller's promise about the definition.
+        NEKTON_SIGNAL_TABLE => Signal::Table(unsafe { array("rows", s.rows, s.row_count) }?),
+        NEKTON_SIGNAL_CHANNEL => Signal::Channel,
+        kind => return unknown("signal.kind", kind),
+    })
+}
+
+pub(crate) unsafe fn wall<R: Real>(w: &WallDef<R>) -> Outcome<Wall<'_, R>> {
+    Ok(Wall {
+        // SAFETY: the caller's promise about the definition.
+        shape: unsafe { shape(&w.shape) }?,
+        position: w.position,
+        angle: w.angle,
+        nodes: w.nodes,
+        circulation: w.circulation,
+    })
+}
+
+pub(crate) unsafe fn link<R: Real>(l: &LinkDef<R>) -> Outcome<Link<'_, R>> {
+    let mass = match l.mass_kind {
+        NEKTON_MASS_DENSITY => Mass::Density(l.density),
+        NEKTON_MASS_GIVEN => Mass::Given { mass: l.mass, inertia: l.inertia, centre_of_mass: l.centre_of_mass },
+        kind => return unknown("mass_kind", kind),
+    };
+    // SAFETY (both): the caller's promise about the definition.
+    let joint = if l.parent == -1 { None } else { Some(unsafe { joint(l) }?) };
+    let shape = unsafe { shape(&l.shape) }?;
+    Ok(Link { shape, mass, nodes: l.nodes, circulation: l.circulation, joint })
+}
+
+unsafe fn joint<R: Real>(l: &LinkDef<R>) -> Outcome<Joint<'_, R>> {
+    let Ok(parent) = usize::try_from(l.parent) else {
+        return Err(Fault::of(Status::BadParent, "parent", f64::from(l.parent)));
+    };
+    let kind = match l.joint {
+        NEKTON_JOINT_HINGE => JointKind::Hinge,
+        NEKTON_JOINT_SLIDER => JointKind::Slider { axis: l.axis, angle: l.angle },
+        kind => return unknown("joint", kind),
+    };
+    // SAFETY: the caller's promise about the definition.
+    let signal = || unsafe { signal(&l.signal) };
+    let drive = match l.drive {
+        NEKTON_DRIVE_LOCKED => Drive::Locked(l.locked_value),
+        NEKTON_DRIVE_MOTION => Drive::Motion(signal()?),
+        NEKTON_DRIVE_TORQUE => Drive::Torque {
+            torque: signal()?,
+            stiffness: l.stiffness,
+            damping: l.damping,
+            rest: l.rest,
+            start: l.start,
+        },
+        kind => return unknown("drive", kind),
+    };
+    Ok(Joint { parent, kind, parent_anchor: l.parent_anchor, self_anchor: l.self_anchor, drive })
+}
+
+/// A body without its links.
+pub(crate) unsafe fn body<R: Real>(b: &BodyDef<R>) -> Outcome<Body<'_, R>> {
+    let root = match b.root {
+        NEKTON_ROOT_FREE => Root::Free,
+        NEKTON_ROOT_PRESCRIBED => {
+            let [x, y, theta] = &b.motion;
+            // SAFETY: the caller's promise about the definition.
+            unsafe { Root::Prescribed([signal(x)?, signal(y)?, signal(theta)?]) }
+        }
+        kind => return unknown("root", kind),
+    };
+    Ok(Body { pose: b.pose, velocity: b.velocity, root, links: &[] })
+}
+
+/// A scene without its walls and bodies.
+pub(crate) fn settings<R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'_, R>> {
+    Ok(Scene {
+        repulsion: if s.repulsion_epsilon == R::zero() {
+            None
+        } else {
+            Some(Repulsion { alpha: s.repulsion_alpha, epsilon: s.repulsion_epsilon })
+        },
+        circulation: match s.circulation {
+            NEKTON_CIRCULATION_FULL => CirculationModel::Full,
+            NEKTON_CIRCULATION_PAPER => CirculationModel::Paper,
+            kind => return unknown("circulation", kind),
+        },
+        force: match s.force {
+            NEKTON_FORCE_EXACT_GRADIENT => ForceFormula::ExactGradient,
+            NEKTON_FORCE_BOUNDARY => ForceFormula::Boundary,
+            kind => return unknown("force", kind),
+        },
+        shortcuts: flag("shortcuts", s.shortcuts)?,
+        ..Scene::new(s.fluid_density, s.gravity)
+    })
+}
+
+pub(crate) fn method<R: Real>(m: &MethodDef<R>) -> Outcome<Method<R>> {
+    Ok(match m.kind {
+        NEKTON_METHOD_RK4 => Method::Rk4 { step: m.step },
+        NEKTON_METHOD_ABM4 => Method::Abm4 { step: m.step },
+        NEKTON_METHOD_ADAMS => Method::Adams { relative: m.relative, absolute: m.absolute },
+        kind => return unknown("method.kind", kind),
+    })
+}

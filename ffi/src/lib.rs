@@ -1,0 +1,42 @@
+#![no_std]
+#![allow(non_camel_case_types)]
+//! C interface of nekton: `include/nekton.h` is generated from the exported functions and types here.
+//!
+//! Every exported function is a line or two around generic code: `api64` is written by hand, `api32` is made from it by
+//! `cargo xtask header`, `shared` has no twin.
+//!
+//! Pointers: each is checked for NULL and alignment, each count for overflow, each kind for its range, before anything is read
+//! through it or written. What cannot be checked is the caller's duty: that a pointer with a count points to so many items,
+//! that objects are used by one thread at a time (models: any number), and that memory stays until the object is not used.
+
+#[cfg(all(not(feature = "std"), not(panic = "abort")))]
+compile_error!("without std the library must be built with panic = \"abort\": cargo build --profile embedded");
+
+#[cfg(feature = "std")]
+extern crate std;
+
+pub mod api32;
+pub mod api64;
+mod check;
+mod convert;
+pub mod diag;
+mod memory;
+mod model;
+pub mod shared;
+mod sim;
+pub mod types;
+
+#[cfg(not(feature = "std"))]
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    #[cfg(feature = "panic-handler")]
+    loop {}
+    #[cfg(not(feature = "panic-handler"))]
+    {
+        unsafe extern "C" {
+            fn nekton_panicked() -> !;
+        }
+        // SAFETY: nothing defines this function, so that an archive in which a panic could happen does not link.
+        unsafe { nekton_panicked() }
+    }
+}

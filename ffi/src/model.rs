@@ -1,0 +1,353 @@
+//! Models, for both precisions.
+
+use crate::check::Checked;
+use crate::convert::check_pointer;
+use crate::diag::{Fault, Outcome, place_of};
+use crate::memory::{begin_model, check_memory, model, model_req};
+use crate::shared::NEKTON_ABI_VERSION;
+use crate::types::*;
+use nekton::{Formulation, Model, Place, Real, Status};
+
+/// Writes a result through a pointer that was checked before anything was computed.
+pub(crate) unsafe fn give<T>(to: *mut T, value: T) -> Outcome<Status> {
+    // SAFETY: `check_pointer` was passed.
+    unsafe { to.write(value) };
+    Ok(Status::Ok)
+}
+
+fn no_shape<R: Real>() -> ShapeDef<R> {
+    let zero = R::zero();
+    ShapeDef {
+        kind: NEKTON_SHAPE_NONE,
+        lobes: 0,
+        a: zero,
+        b: zero,
+        radius: zero,
+        amplitude: zero,
+        width: zero,
+        height: zero,
+        corner_radius: zero,
+        points: core::ptr::null(),
+        point_count: 0,
+    }
+}
+
+fn no_signal<R: Real>() -> SignalDef<R> {
+    let zero = R::zero();
+    SignalDef {
+        kind: NEKTON_SIGNAL_CONSTANT,
+        value: zero,
+        harmonics: core::ptr::null(),
+        harmonic_count: 0,
+        window: WindowDef { from: zero, to: zero, ramp: zero },
+        rows: core::ptr::null(),
+        row_count: 0,
+    }
+}
+
+pub(crate) unsafe fn init_scene<R: Real>(def: *mut SceneDef<R>, size: usize, version: u32) -> Outcome<Status> {
+    check_pointer("def", def.cast_const())?;
+    if size != size_of::<SceneDef<R>>() {
+        return Err(Fault::of(Status::AbiVersion, "struct_size", size as f64));
+    }
+    if version != NEKTON_ABI_VERSION {
+        return Err(Fault::of(Status::AbiVersion, "abi_version", f64::from(version)));
+    }
+    let content = SceneDef {
+        struct_size: size as u32,
+        abi_version: version,
+        fluid_density: R::one(),
+        gravity: R::zero(),
+        repulsion_epsilon: R::zero(),
+        repulsion_alpha: R::lit(4.0),
+        circulation: NEKTON_CIRCULATION_FULL,
+        force: NEKTON_FORCE_EXACT_GRADIENT,
+        shortcuts: 1,
+        tank: core::ptr::null(),
+        obstacles: core::ptr::null(),
+        obstacle_count: 0,
+        bodies: core::ptr::null(),
+        body_count: 0,
+    };
+    // SAFETY: checked; the caller promises room for this struct.
+    unsafe { give(def, content) }
+}
+
+pub(crate) unsafe fn init_wall<R: Real>(def: *mut WallDef<R>) -> Outcome<Status> {
+    check_pointer("def", def.cast_const())?;
+    let zero = R::zero();
+    let content = WallDef { shape: no_shape(), position: [zero; 2], angle: zero, nodes: 64, circulation: zero };
+    // SAFETY: as above.
+    unsafe { give(def, content) }
+}
+
+pub(crate) unsafe fn init_link<R: Real>(def: *mut LinkDef<R>) -> Outcome<Status> {
+    check_pointer("def", def.cast_const())?;
+    let zero = R::zero();
+    let content = LinkDef {
+        shape: no_shape(),
+        nodes: 64,
+        circulation: zero,
+        mass_kind: NEKTON_MASS_DENSITY,
+        parent: -1,
+        density: R::one(),
+        mass: zero,
+        inertia: zero,
+        centre_of_mass: [zero; 2],
+        joint: NEKTON_JOINT_HINGE,
+        drive: NEKTON_DRIVE_LOCKED,
+        parent_anchor: [zero; 2],
+        self_anchor: [zero; 2],
+        axis: [R::one(), zero],
+        angle: zero,
+        locked_value: zero,
+        signal: no_signal(),
+        stiffness: zero,
+        damping: zero,
+        rest: zero,
+        start: [zero; 2],
+    };
+    // SAFETY: as above.
+    unsafe { give(def, content) }
+}
+
+pub(crate) unsafe fn init_body<R: Real>(def: *mut BodyDef<R>) -> Outcome<Status> {
+    check_pointer("def", def.cast_const())?;
+    let zero = R::zero();
+    let content = BodyDef {
+        pose: [zero; 3],
+        velocity: [zero; 3],
+        root: NEKTON_ROOT_FREE,
+        motion: [no_signal(); 3],
+        links: core::ptr::null(),
+        link_count: 0,
+    };
+    // SAFETY: as above.
+    unsafe { give(def, content) }
+}
+
+pub(crate) unsafe fn req<R: Real>(def: *const SceneDef<R>, req: *mut nekton_req) -> Outcome<Status> {
+    check_pointer("req", req.cast_const())?;
+    // SAFETY: the caller's promise about the definition.
+    unsafe {
+        let scene = Checked::new(def)?;
+        give(req, model_req::<R>(&Model::requirement(&scene)?)?)
+    }
+}
+
+/// Compiles into memory; the notice of the first boundary that has one.
+pub(crate) unsafe fn init<R: Real>(
+    mem: *mut u8,
+    len: usize,
+    def: *const SceneDef<R>,
+    out: *mut *mut ModelHandle<R>,
+    owned: bool,
+) -> Outcome<Option<(Place, Status)>> {
+    check_pointer("model", out.cast_const())?;
+    // SAFETY: the caller's promise about the definition; the memory is checked before it is written.
+    unsafe {
+        let scene = Checked::new(def)?;
+        let need = Model::requirement(&scene)?;
+        check_memory(mem, len, &model_req::<R>(&need)?)?;
+        let mut parts = begin_model(mem, &need)?;
+        let head = Model::init(&scene, &mut parts.memory)?;
+        let handle = parts.finish(head, owned)?;
+        give(out, handle)?;
+        let notice = model(handle.cast_const())?.notices().next();
+        Ok(notice)
+    }
+}
+
+/// Memory from the heap.
+#[cfg(feature = "std")]
+fn allocate(req: &nekton_req) -> Outcome<*mut u8> {
+    let layout = std::alloc::Layout::from_size_align(req.size, req.align)
+        .map_err(|_| Fault::of(Status::SizeOverflow, "size", req.size as f64))?;
+    // SAFETY: the size is not 0: every object has a front.
+    let mem = unsafe { std::alloc::alloc(layout) };
+    if mem.is_null() { Err(Fault::of(Status::OutOfMemory, "size", req.size as f64)) } else { Ok(mem) }
+}
+
+#[cfg(feature = "std")]
+unsafe fn release(mem: *mut u8, bytes: usize) {
+    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, crate::memory::ALIGN) {
+        // SAFETY: from `allocate` with the same layout.
+        unsafe { std::alloc::dealloc(mem, layout) };
+    }
+}
+
+/// Makes an object in memory from the heap, which is given back if that fails.
+#[cfg(feature = "std")]
+pub(crate) unsafe fn on_heap<T>(req: &nekton_req, make: impl FnOnce(*mut u8) -> Outcome<T>) -> Outcome<T> {
+    let mem = allocate(req)?;
+    let made = make(mem);
+    if made.is_err() {
+        // SAFETY: just allocated, and nothing was made of it.
+        unsafe { release(mem, req.size) };
+    }
+    made
+}
+
+#[cfg(feature = "std")]
+pub(crate) unsafe fn create<R: Real>(
+    def: *const SceneDef<R>,
+    out: *mut *mut ModelHandle<R>,
+) -> Outcome<Option<(Place, Status)>> {
+    let mut need = nekton_req::default();
+    // SAFETY: the caller's promise about the definition.
+    unsafe {
+        check_pointer("model", out.cast_const())?;
+        self::req(def, &mut need)?;
+        on_heap(&need, |mem| init(mem, need.size, def, out, true))
+    }
+}
+
+#[cfg(feature = "std")]
+pub(crate) unsafe fn free<R: Real>(handle: *mut ModelHandle<R>) -> Outcome<Status> {
+    if handle.is_null() {
+        return Ok(Status::Ok);
+    }
+    // SAFETY: `retire_model` checks that the object came from `create`.
+    unsafe {
+        let owned = crate::memory::retire_model(handle)?;
+        release(owned.mem, owned.bytes);
+    }
+    Ok(Status::Ok)
+}
+
+#[cfg(feature = "std")]
+pub(crate) unsafe fn free_sim<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Status> {
+    if handle.is_null() {
+        return Ok(Status::Ok);
+    }
+    // SAFETY: `retire_sim` checks that the object came from `create`.
+    unsafe {
+        let owned = crate::memory::retire_sim(handle)?;
+        release(owned.mem, owned.bytes);
+    }
+    Ok(Status::Ok)
+}
+
+#[cfg(not(feature = "std"))]
+pub(crate) unsafe fn create<R: Real>(
+    _: *const SceneDef<R>,
+    _: *mut *mut ModelHandle<R>,
+) -> Outcome<Option<(Place, Status)>> {
+    Err(Status::Unsupported.into())
+}
+
+#[cfg(not(feature = "std"))]
+pub(crate) unsafe fn free<R: Real>(handle: *mut ModelHandle<R>) -> Outcome<Status> {
+    if handle.is_null() { Ok(Status::Ok) } else { Err(Status::Unsupported.into()) }
+}
+
+#[cfg(not(feature = "std"))]
+pub(crate) unsafe fn free_sim<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Status> {
+    if handle.is_null() { Ok(Status::Ok) } else { Err(Status::Unsupported.into()) }
+}
+
+pub(crate) unsafe fn plan<R: Real>(handle: *const ModelHandle<R>, out: *mut nekton_plan) -> Outcome<Status> {
+    check_pointer("plan", out.cast_const())?;
+    // SAFETY: checked in `model`.
+    let model = unsafe { model(handle) }?;
+    let p = model.plan();
+    let plan = nekton_plan {
+        formulation: match p.formulation {
+            Formulation::Velocity => NEKTON_FORMULATION_VELOCITY,
+            Formulation::Kirchhoff => NEKTON_FORMULATION_KIRCHHOFF,
+            Formulation::LockedMomentum => NEKTON_FORMULATION_LOCKED_MOMENTUM,
+        },
+        fluid: i32::from(p.fluid),
+        gravity: i32::from(p.gravity),
+        repulsion: i32::from(p.repulsion),
+        circulation: i32::from(p.circulation),
+        links: p.links,
+        walls: p.walls,
+        joints: model.joint_count(),
+        channels: model.channel_count(),
+        notices: model.notices().count(),
+        coordinates: 3 * p.links,
+        free_coordinates: p.free_coordinates,
+        prescribed_coordinates: p.prescribed_coordinates,
+        state_len: p.state_len,
+        unknowns: p.unknowns,
+        moving_unknowns: p.moving_unknowns,
+        right_hand_sides: p.right_hand_sides,
+        // SAFETY: checked in `model`.
+        model_bytes: unsafe { crate::memory::model_bytes(handle) }?,
+        sim_bytes: crate::memory::sim_req(&model)?.size,
+        operations: p.operations,
+    };
+    // SAFETY: checked above.
+    unsafe { give(out, plan) }
+}
+
+fn out_of_range(what: &'static str, i: usize) -> Fault {
+    Fault::of(Status::OutOfRange, what, i as f64)
+}
+
+pub(crate) unsafe fn link<R: Real>(handle: *const ModelHandle<R>, i: usize, out: *mut LinkOut<R>) -> Outcome<Status> {
+    check_pointer("info", out.cast_const())?;
+    // SAFETY: checked in `model`.
+    let l = unsafe { model(handle) }?.link(i).ok_or(out_of_range("link", i))?;
+    let info = LinkOut {
+        place: l.place.into(),
+        nodes: l.nodes,
+        mass: l.mass,
+        inertia: l.inertia,
+        area: l.area,
+        perimeter: l.perimeter,
+        centroid: l.centroid,
+    };
+    // SAFETY: checked above.
+    unsafe { give(out, info) }
+}
+
+pub(crate) unsafe fn joint<R: Real>(
+    handle: *const ModelHandle<R>,
+    j: usize,
+    out: *mut nekton_joint_info,
+) -> Outcome<Status> {
+    check_pointer("info", out.cast_const())?;
+    // SAFETY: checked in `model`.
+    let joint = unsafe { model(handle) }?.joint(j).ok_or(out_of_range("joint", j))?;
+    // SAFETY: checked above.
+    unsafe { give(out, nekton_joint_info { place: joint.place.into(), prescribed: i32::from(joint.prescribed) }) }
+}
+
+pub(crate) unsafe fn notice<R: Real>(
+    handle: *const ModelHandle<R>,
+    i: usize,
+    place: *mut nekton_place,
+    status: *mut nekton_status,
+) -> Outcome<Status> {
+    check_pointer("place", place.cast_const())?;
+    check_pointer("status", status.cast_const())?;
+    // SAFETY: checked in `model`.
+    let notice = unsafe { model(handle) }?.notices().nth(i).ok_or(out_of_range("notice", i))?;
+    // SAFETY: checked above.
+    unsafe {
+        give(place, notice.0.into())?;
+        give(status, notice.1.code())
+    }
+}
+
+pub(crate) unsafe fn outline_point<R: Real>(
+    handle: *const ModelHandle<R>,
+    place: *const nekton_place,
+    t: R,
+    out: *mut [R; 2],
+) -> Outcome<Status> {
+    check_pointer("place", place)?;
+    check_pointer("point", out.cast_const())?;
+    if !t.is_finite() {
+        return Err(Fault::of(Status::NotFinite, "t", t.to_f64()));
+    }
+    // SAFETY: checked above and in `model`.
+    unsafe {
+        let place = *place;
+        let model = model(handle)?;
+        let point = place_of(&place).and_then(|p| model.outline_point(p, t));
+        give(out, point.ok_or(Fault::of(Status::OutOfRange, "place", f64::from(place.kind)))?)
+    }
+}
