@@ -15,6 +15,7 @@ classdef Nekton < handle
 %
 %   sim.step              one step of the method (with controls: one control_step)
 %   sim.advance(t)        to exactly time t
+%   sim.show(t, t_stop)   the same, cheaper when output is wanted at many times up to t_stop
 %   [y, t] = sim.state    integrated state;  sim.setState(t, y) sets it
 %   dy = sim.rhs(t, y)    its rate, for ode45, ode113, lsode; the simulation does not change
 %   sim.time, sim.positions, sim.velocities    3 x links: x, y, theta of the centres of mass, and their rates
@@ -151,6 +152,16 @@ classdef Nekton < handle
                 self.prepare(next);
                 nekton_mex('advance', self.id, min(next, t_end));
                 t = self.time();
+            end
+        end
+
+        function show(self, t, t_stop)
+        %SHOW  show(t, t_stop) shows the state at time t; the integrator may run ahead, but not beyond t_stop. Cheaper than advance
+        %   when output is wanted at many times. With controls it is the same as advance.
+            if self.plan.channels > 0
+                self.advance(t);
+            else
+                nekton_mex('advance_dense', self.id, t, t_stop);
             end
         end
 

@@ -22,7 +22,7 @@ if ischar(f)
 end
 h = sqrt(tol);
 times = linspace(0, tmax, 400);
-[c, dc] = f(0, parameters);
+[c, dc, ~] = f(0, parameters);
 n = numel(c);
 all_of = zeros(n, 3, numel(times));
 wrong = zeros(n, 2, numel(times));

@@ -57,11 +57,11 @@ plot(times, path(:, 1));
 ylabel('x of the head');
 subplot(3, 1, 2);
 plot(times, energies);
-legend('fluid', 'bodies', 'total');
+legend('fluid', 'bodies', 'total', 'location', 'northwest');
 ylabel('kinetic energy');
 subplot(3, 1, 3);
 plot(times, torques);
-legend('front', 'rear', 'tail');
+legend('front', 'rear', 'tail', 'location', 'northwest');
 ylabel('torque');
 xlabel('t');
 if ~isempty(folder)

@@ -9,6 +9,7 @@ if isempty(names)
     files = dir(fullfile(here, 'tests', 'test_*.m'));
     names = sort(strrep({files.name}, '.m', ''));
 end
+warning('off', 'Octave:gnuplot-graphics');
 failed = 0;
 for k = 1:numel(names)
     start = tic();
