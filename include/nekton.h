@@ -276,7 +276,10 @@ typedef struct nekton_shape {
     double height;
     /** Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default. */
     double corner_radius;
-    /** Polygon, curve: x, y of each point in order (the last joins the first). */
+    /**
+     * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+     * double (*)[2] to this type without a cast.
+     */
     const double (*points)[2];
     /** Number of points. */
     size_t point_count;
@@ -330,7 +333,7 @@ typedef struct nekton_signal {
     size_t harmonic_count;
     /** Harmonic: the window. */
     struct nekton_window window;
-    /** Table: the rows. */
+    /** Table: the rows, const as the points of a shape. */
     const double (*rows)[4];
     /** Number of rows. */
     size_t row_count;
@@ -588,7 +591,10 @@ typedef struct nekton32_shape {
     float height;
     /** Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default. */
     float corner_radius;
-    /** Polygon, curve: x, y of each point in order (the last joins the first). */
+    /**
+     * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+     * double (*)[2] to this type without a cast.
+     */
     const float (*points)[2];
     /** Number of points. */
     size_t point_count;
@@ -642,7 +648,7 @@ typedef struct nekton32_signal {
     size_t harmonic_count;
     /** Harmonic: the window. */
     struct nekton32_window window;
-    /** Table: the rows. */
+    /** Table: the rows, const as the points of a shape. */
     const float (*rows)[4];
     /** Number of rows. */
     size_t row_count;
@@ -836,8 +842,8 @@ void nekton_diag_text(const struct nekton_diag *diag,
                       size_t size);
 
 /**
- * Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as
- * nekton_scene_def_init(&def, sizeof def, NEKTON_ABI_VERSION).
+ * Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as nekton_scene_def_init(&def,
+ * sizeof def, NEKTON_ABI_VERSION).
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION (header and library do not fit). Any thread.
  */
 nekton_status nekton_scene_def_init(struct nekton_scene_def *def, size_t struct_size, uint32_t abi_version);
@@ -855,27 +861,25 @@ nekton_status nekton_wall_def_init(struct nekton_wall_def *def);
 nekton_status nekton_body_def_init(struct nekton_body_def *def);
 
 /**
- * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge locked at 0.
- * The shape is still to be set.
+ * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+ * locked at 0. The shape is still to be set.
  * Errors: NULL_POINTER, MISALIGNED. Any thread.
  */
 nekton_status nekton_link_def_init(struct nekton_link_def *def);
 
 /**
  * Memory that nekton_model_init needs for this scene. Checks everything but geometry.
- * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT, BAD_PARENT,
- * MASSLESS, SIZE_OVERFLOW. Any thread.
+ * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
+ * BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
  */
-nekton_status nekton_model_req(const struct nekton_scene_def *def,
-                               struct nekton_req *req,
-                               struct nekton_diag *diag);
+nekton_status nekton_model_req(const struct nekton_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
 /**
- * Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and needs no
- * other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the first; all by
- * nekton_model_notice) when something was mended.
- * Errors: as nekton_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION, OUT_OF_RANGE,
- * BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
+ * Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and
+ * needs no other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the
+ * first; all by nekton_model_notice) when something was mended.
+ * Errors: as nekton_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION,
+ * OUT_OF_RANGE, BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
  */
 nekton_status nekton_model_init(void *mem,
                                 size_t len,
@@ -925,8 +929,8 @@ nekton_status nekton_model_notice(const struct nekton_model *model,
                                   nekton_status *status);
 
 /**
- * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
- * the world.
+ * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
+ * mass as origin, walls in the world.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, OUT_OF_RANGE (no such place). Any thread.
  */
 nekton_status nekton_model_outline_point(const struct nekton_model *model,
@@ -944,10 +948,11 @@ nekton_status nekton_sim_req(const struct nekton_model *model,
                              struct nekton_diag *diag);
 
 /**
- * Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which must stay, like
- * the model, as long as the simulation is used, and needs no other clean-up. *sim is set on success only.
- * Errors: as nekton_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem holds no
- * simulation. Any thread; the simulation is then used by one thread at a time.
+ * Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which
+ * must stay, like the model, as long as the simulation is used, and needs no other clean-up. *sim is set on
+ * success only.
+ * Errors: as nekton_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem
+ * holds no simulation. Any thread; the simulation is then used by one thread at a time.
  */
 nekton_status nekton_sim_init(void *mem,
                               size_t len,
@@ -972,12 +977,12 @@ nekton_status nekton_sim_create(const struct nekton_model *model,
 nekton_status nekton_sim_free(struct nekton_sim *sim);
 
 /**
- * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past, channels, counters.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read from while nobody uses it.
+ * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
+ * channels, counters.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
+ * from while nobody uses it.
  */
-nekton_status nekton_sim_copy(struct nekton_sim *to,
-                              const struct nekton_sim *from,
-                              struct nekton_diag *diag);
+nekton_status nekton_sim_copy(struct nekton_sim *to, const struct nekton_sim *from, struct nekton_diag *diag);
 
 /**
  * The simulation's model.
@@ -1004,15 +1009,16 @@ nekton_status nekton_sim_positions(const struct nekton_sim *sim, double *q, size
 nekton_status nekton_sim_velocities(const struct nekton_sim *sim, double *qd, size_t n);
 
 /**
- * Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the drives if
- * anything is driven; n = state_len of the plan.
+ * Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the
+ * drives if anything is driven; n = state_len of the plan.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
  */
 nekton_status nekton_sim_get_state(const struct nekton_sim *sim, double *t, double *y, size_t n);
 
 /**
  * Sets time and state as nekton_sim_get_state gives them; the integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as it was. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as
+ * it was. One thread per simulation.
  */
 nekton_status nekton_sim_set_state(struct nekton_sim *sim,
                                    double t,
@@ -1028,24 +1034,22 @@ nekton_status nekton_sim_restart(struct nekton_sim *sim);
 
 /**
  * One step of the method (ADAMS: one step of its own choice).
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the simulation is then as it was, bit for bit. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
+ * simulation is then as it was, bit for bit. One thread per simulation.
  */
-nekton_status nekton_sim_step(struct nekton_sim *sim,
-                              struct nekton_diag *diag);
+nekton_status nekton_sim_step(struct nekton_sim *sim, struct nekton_diag *diag);
 
 /**
- * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is the step
- * function of a controller: set channels, advance by a sample time, read the state.
- * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then as it was
- * before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+ * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
+ * the step function of a controller: set channels, advance by a sample time, read the state.
+ * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+ * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
-nekton_status nekton_sim_advance(struct nekton_sim *sim,
-                                 double t_end,
-                                 struct nekton_diag *diag);
+nekton_status nekton_sim_advance(struct nekton_sim *sim, double t_end, struct nekton_diag *diag);
 
 /**
- * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance when output is
- * wanted at many times: ADAMS keeps its steps and interpolates.
+ * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance
+ * when output is wanted at many times: ADAMS keeps its steps and interpolates.
  * Errors: as nekton_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
@@ -1054,9 +1058,11 @@ nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
                                        struct nekton_diag *diag);
 
 /**
- * Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
- * each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+ * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,
+ * d2u/dt2 (4 numbers) at both ends of the coming interval, quintic in between, constant outside. For a torque
+ * these are the torque and its rates. The integrator starts anew.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no
+ * such channel). One thread per simulation.
  */
 nekton_status nekton_sim_set_channel(struct nekton_sim *sim,
                                      size_t channel,
@@ -1065,9 +1071,10 @@ nekton_status nekton_sim_set_channel(struct nekton_sim *sim,
                                      struct nekton_diag *diag);
 
 /**
- * Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton_sim_get_state, n = state_len, not overlapping.
- * The simulation's own state does not change.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE; ydot is then 0. One thread per simulation.
+ * Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton_sim_get_state, n = state_len, not
+ * overlapping. The simulation's own state does not change.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE;
+ * ydot is then 0. One thread per simulation.
  */
 nekton_status nekton_sim_rhs(struct nekton_sim *sim,
                              double t,
@@ -1084,7 +1091,8 @@ nekton_status nekton_sim_joint_values(struct nekton_sim *sim, double *u, double 
 
 /**
  * Torque (slider: force) that drives every joint, and its power; n = joints each.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One evaluation if there was none since the last step. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One
+ * evaluation if there was none since the last step. One thread per simulation.
  */
 nekton_status nekton_sim_joint_torques(struct nekton_sim *sim,
                                        double *torque,
@@ -1094,70 +1102,62 @@ nekton_status nekton_sim_joint_torques(struct nekton_sim *sim,
 
 /**
  * Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_accelerations(struct nekton_sim *sim,
-                                       double *out,
-                                       size_t n,
-                                       struct nekton_diag *diag);
+nekton_status nekton_sim_accelerations(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_mass_matrix(struct nekton_sim *sim,
-                                     double *out,
-                                     size_t n,
-                                     struct nekton_diag *diag);
+nekton_status nekton_sim_mass_matrix(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_added_mass(struct nekton_sim *sim,
-                                    double *out,
-                                    size_t n,
-                                    struct nekton_diag *diag);
+nekton_status nekton_sim_added_mass(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
+ * none since the last step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_christoffel(struct nekton_sim *sim,
-                                     double *out,
-                                     size_t n,
-                                     struct nekton_diag *diag);
+nekton_status nekton_sim_christoffel(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For inspection: (3 links)^2 forces.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
+ * inspection: (3 links)^2 forces.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_christoffel_tensor(struct nekton_sim *sim,
-                                            double *out,
-                                            size_t n,
-                                            struct nekton_diag *diag);
+nekton_status nekton_sim_christoffel_tensor(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
+ * last step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_buoyancy(struct nekton_sim *sim,
-                                  double *out,
-                                  size_t n,
-                                  struct nekton_diag *diag);
+nekton_status nekton_sim_buoyancy(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
+ * step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_repulsion(struct nekton_sim *sim,
-                                   double *out,
-                                   size_t n,
-                                   struct nekton_diag *diag);
+nekton_status nekton_sim_repulsion(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
+ * step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
 nekton_status nekton_sim_circulation_gradient(struct nekton_sim *sim,
                                               double *out,
@@ -1166,12 +1166,10 @@ nekton_status nekton_sim_circulation_gradient(struct nekton_sim *sim,
 
 /**
  * Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton_sim_gyroscopic(struct nekton_sim *sim,
-                                    double *out,
-                                    size_t n,
-                                    struct nekton_diag *diag);
+nekton_status nekton_sim_gyroscopic(struct nekton_sim *sim, double *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Energies at the state shown. One evaluation if there was none since the last step.
@@ -1206,8 +1204,8 @@ nekton_status nekton_sim_gap(struct nekton_sim *sim, struct nekton_gap *gap, str
 nekton_status nekton_sim_counters(const struct nekton_sim *sim, struct nekton_counters *counters);
 
 /**
- * Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as
- * nekton32_scene_def_init(&def, sizeof def, NEKTON_ABI_VERSION).
+ * Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as nekton32_scene_def_init(&def,
+ * sizeof def, NEKTON_ABI_VERSION).
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION (header and library do not fit). Any thread.
  */
 nekton_status nekton32_scene_def_init(struct nekton32_scene_def *def, size_t struct_size, uint32_t abi_version);
@@ -1225,27 +1223,25 @@ nekton_status nekton32_wall_def_init(struct nekton32_wall_def *def);
 nekton_status nekton32_body_def_init(struct nekton32_body_def *def);
 
 /**
- * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge locked at 0.
- * The shape is still to be set.
+ * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+ * locked at 0. The shape is still to be set.
  * Errors: NULL_POINTER, MISALIGNED. Any thread.
  */
 nekton_status nekton32_link_def_init(struct nekton32_link_def *def);
 
 /**
  * Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
- * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT, BAD_PARENT,
- * MASSLESS, SIZE_OVERFLOW. Any thread.
+ * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
+ * BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
  */
-nekton_status nekton32_model_req(const struct nekton32_scene_def *def,
-                                 struct nekton_req *req,
-                                 struct nekton_diag *diag);
+nekton_status nekton32_model_req(const struct nekton32_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
 /**
- * Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and needs no
- * other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the first; all by
- * nekton32_model_notice) when something was mended.
- * Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION, OUT_OF_RANGE,
- * BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
+ * Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and
+ * needs no other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the
+ * first; all by nekton32_model_notice) when something was mended.
+ * Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION,
+ * OUT_OF_RANGE, BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
  */
 nekton_status nekton32_model_init(void *mem,
                                   size_t len,
@@ -1295,8 +1291,8 @@ nekton_status nekton32_model_notice(const struct nekton32_model *model,
                                     nekton_status *status);
 
 /**
- * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
- * the world.
+ * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
+ * mass as origin, walls in the world.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, OUT_OF_RANGE (no such place). Any thread.
  */
 nekton_status nekton32_model_outline_point(const struct nekton32_model *model,
@@ -1314,10 +1310,11 @@ nekton_status nekton32_sim_req(const struct nekton32_model *model,
                                struct nekton_diag *diag);
 
 /**
- * Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which must stay, like
- * the model, as long as the simulation is used, and needs no other clean-up. *sim is set on success only.
- * Errors: as nekton32_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem holds no
- * simulation. Any thread; the simulation is then used by one thread at a time.
+ * Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which
+ * must stay, like the model, as long as the simulation is used, and needs no other clean-up. *sim is set on
+ * success only.
+ * Errors: as nekton32_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem
+ * holds no simulation. Any thread; the simulation is then used by one thread at a time.
  */
 nekton_status nekton32_sim_init(void *mem,
                                 size_t len,
@@ -1342,12 +1339,12 @@ nekton_status nekton32_sim_create(const struct nekton32_model *model,
 nekton_status nekton32_sim_free(struct nekton32_sim *sim);
 
 /**
- * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past, channels, counters.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read from while nobody uses it.
+ * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
+ * channels, counters.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
+ * from while nobody uses it.
  */
-nekton_status nekton32_sim_copy(struct nekton32_sim *to,
-                                const struct nekton32_sim *from,
-                                struct nekton_diag *diag);
+nekton_status nekton32_sim_copy(struct nekton32_sim *to, const struct nekton32_sim *from, struct nekton_diag *diag);
 
 /**
  * The simulation's model.
@@ -1374,15 +1371,16 @@ nekton_status nekton32_sim_positions(const struct nekton32_sim *sim, float *q, s
 nekton_status nekton32_sim_velocities(const struct nekton32_sim *sim, float *qd, size_t n);
 
 /**
- * Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the drives if
- * anything is driven; n = state_len of the plan.
+ * Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the
+ * drives if anything is driven; n = state_len of the plan.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
  */
 nekton_status nekton32_sim_get_state(const struct nekton32_sim *sim, float *t, float *y, size_t n);
 
 /**
  * Sets time and state as nekton32_sim_get_state gives them; the integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as it was. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as
+ * it was. One thread per simulation.
  */
 nekton_status nekton32_sim_set_state(struct nekton32_sim *sim,
                                      float t,
@@ -1398,24 +1396,22 @@ nekton_status nekton32_sim_restart(struct nekton32_sim *sim);
 
 /**
  * One step of the method (ADAMS: one step of its own choice).
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the simulation is then as it was, bit for bit. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
+ * simulation is then as it was, bit for bit. One thread per simulation.
  */
-nekton_status nekton32_sim_step(struct nekton32_sim *sim,
-                                struct nekton_diag *diag);
+nekton_status nekton32_sim_step(struct nekton32_sim *sim, struct nekton_diag *diag);
 
 /**
- * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is the step
- * function of a controller: set channels, advance by a sample time, read the state.
- * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then as it was
- * before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+ * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
+ * the step function of a controller: set channels, advance by a sample time, read the state.
+ * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+ * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
-nekton_status nekton32_sim_advance(struct nekton32_sim *sim,
-                                   float t_end,
-                                   struct nekton_diag *diag);
+nekton_status nekton32_sim_advance(struct nekton32_sim *sim, float t_end, struct nekton_diag *diag);
 
 /**
- * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance when output is
- * wanted at many times: ADAMS keeps its steps and interpolates.
+ * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
+ * when output is wanted at many times: ADAMS keeps its steps and interpolates.
  * Errors: as nekton32_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
@@ -1424,9 +1420,11 @@ nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
                                          struct nekton_diag *diag);
 
 /**
- * Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
- * each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+ * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,
+ * d2u/dt2 (4 numbers) at both ends of the coming interval, quintic in between, constant outside. For a torque
+ * these are the torque and its rates. The integrator starts anew.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no
+ * such channel). One thread per simulation.
  */
 nekton_status nekton32_sim_set_channel(struct nekton32_sim *sim,
                                        size_t channel,
@@ -1435,9 +1433,10 @@ nekton_status nekton32_sim_set_channel(struct nekton32_sim *sim,
                                        struct nekton_diag *diag);
 
 /**
- * Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton32_sim_get_state, n = state_len, not overlapping.
- * The simulation's own state does not change.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE; ydot is then 0. One thread per simulation.
+ * Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton32_sim_get_state, n = state_len, not
+ * overlapping. The simulation's own state does not change.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE;
+ * ydot is then 0. One thread per simulation.
  */
 nekton_status nekton32_sim_rhs(struct nekton32_sim *sim,
                                float t,
@@ -1454,7 +1453,8 @@ nekton_status nekton32_sim_joint_values(struct nekton32_sim *sim, float *u, floa
 
 /**
  * Torque (slider: force) that drives every joint, and its power; n = joints each.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One evaluation if there was none since the last step. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One
+ * evaluation if there was none since the last step. One thread per simulation.
  */
 nekton_status nekton32_sim_joint_torques(struct nekton32_sim *sim,
                                          float *torque,
@@ -1464,43 +1464,38 @@ nekton_status nekton32_sim_joint_torques(struct nekton32_sim *sim,
 
 /**
  * Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_accelerations(struct nekton32_sim *sim,
-                                         float *out,
-                                         size_t n,
-                                         struct nekton_diag *diag);
+nekton_status nekton32_sim_accelerations(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_mass_matrix(struct nekton32_sim *sim,
-                                       float *out,
-                                       size_t n,
-                                       struct nekton_diag *diag);
+nekton_status nekton32_sim_mass_matrix(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_added_mass(struct nekton32_sim *sim,
-                                      float *out,
-                                      size_t n,
-                                      struct nekton_diag *diag);
+nekton_status nekton32_sim_added_mass(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
+ * none since the last step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_christoffel(struct nekton32_sim *sim,
-                                       float *out,
-                                       size_t n,
-                                       struct nekton_diag *diag);
+nekton_status nekton32_sim_christoffel(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For inspection: (3 links)^2 forces.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
+ * inspection: (3 links)^2 forces.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
 nekton_status nekton32_sim_christoffel_tensor(struct nekton32_sim *sim,
                                               float *out,
@@ -1508,26 +1503,26 @@ nekton_status nekton32_sim_christoffel_tensor(struct nekton32_sim *sim,
                                               struct nekton_diag *diag);
 
 /**
- * Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
+ * last step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_buoyancy(struct nekton32_sim *sim,
-                                    float *out,
-                                    size_t n,
-                                    struct nekton_diag *diag);
+nekton_status nekton32_sim_buoyancy(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
+ * step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_repulsion(struct nekton32_sim *sim,
-                                     float *out,
-                                     size_t n,
-                                     struct nekton_diag *diag);
+nekton_status nekton32_sim_repulsion(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
- * Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
+ * step.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
 nekton_status nekton32_sim_circulation_gradient(struct nekton32_sim *sim,
                                                 float *out,
@@ -1536,12 +1531,10 @@ nekton_status nekton32_sim_circulation_gradient(struct nekton32_sim *sim,
 
 /**
  * Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * per simulation.
  */
-nekton_status nekton32_sim_gyroscopic(struct nekton32_sim *sim,
-                                      float *out,
-                                      size_t n,
-                                      struct nekton_diag *diag);
+nekton_status nekton32_sim_gyroscopic(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
 
 /**
  * Energies at the state shown. One evaluation if there was none since the last step.
@@ -1615,7 +1608,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
 #define NEKTON_P_U(bodies, joints, nodes, walls, wall_nodes) \
     (NEKTON_P_L(bodies, joints) * NEKTON_P_S(nodes) + NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes))
 #define NEKTON_P_KEPT(bodies, joints, walls, channels) \
-    (48 * NEKTON_P_C(bodies, joints) + 10 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
+    (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
      ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + NEKTON_P_S(circulation) * (u) * ((u) + 7))

@@ -6,8 +6,8 @@ use crate::{model, sim};
 use core::ffi::c_void;
 use core::ptr::null_mut;
 
-/// Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as
-/// nekton32_scene_def_init(&def, sizeof def, NEKTON_ABI_VERSION).
+/// Fills a scene definition with defaults: fluid of density 1, nothing else. Call it as nekton32_scene_def_init(&def,
+/// sizeof def, NEKTON_ABI_VERSION).
 /// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION (header and library do not fit). Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_scene_def_init(
@@ -35,8 +35,8 @@ pub unsafe extern "C" fn nekton32_body_def_init(def: *mut BodyDef<f32>) -> nekto
     unsafe { report(null_mut(), model::init_body(def)) }
 }
 
-/// Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge locked at 0.
-/// The shape is still to be set.
+/// Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+/// locked at 0. The shape is still to be set.
 /// Errors: NULL_POINTER, MISALIGNED. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_link_def_init(def: *mut LinkDef<f32>) -> nekton_status {
@@ -45,8 +45,8 @@ pub unsafe extern "C" fn nekton32_link_def_init(def: *mut LinkDef<f32>) -> nekto
 }
 
 /// Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
-/// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT, BAD_PARENT,
-/// MASSLESS, SIZE_OVERFLOW. Any thread.
+/// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
+/// BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_model_req(
     def: *const SceneDef<f32>,
@@ -57,11 +57,11 @@ pub unsafe extern "C" fn nekton32_model_req(
     unsafe { report(diag, model::req(def, req)) }
 }
 
-/// Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and needs no
-/// other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the first; all by
-/// nekton32_model_notice) when something was mended.
-/// Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION, OUT_OF_RANGE,
-/// BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
+/// Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and
+/// needs no other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the
+/// first; all by nekton32_model_notice) when something was mended.
+/// Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION,
+/// OUT_OF_RANGE, BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_model_init(
     mem: *mut c_void,
@@ -139,8 +139,8 @@ pub unsafe extern "C" fn nekton32_model_notice(
     unsafe { report(null_mut(), model::notice(model, notice, place, status)) }
 }
 
-/// Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of mass as origin, walls in
-/// the world.
+/// Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
+/// mass as origin, walls in the world.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, OUT_OF_RANGE (no such place). Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_model_outline_point(
@@ -166,10 +166,11 @@ pub unsafe extern "C" fn nekton32_sim_req(
     unsafe { report(diag, sim::req(model, method, req)) }
 }
 
-/// Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which must stay, like
-/// the model, as long as the simulation is used, and needs no other clean-up. *sim is set on success only.
-/// Errors: as nekton32_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem holds no
-/// simulation. Any thread; the simulation is then used by one thread at a time.
+/// Starts a simulation at time 0 and the scene's initial state in mem (len bytes, aligned to NEKTON_ALIGN), which
+/// must stay, like the model, as long as the simulation is used, and needs no other clean-up. *sim is set on
+/// success only.
+/// Errors: as nekton32_sim_req, MEMORY_TOO_SMALL: nothing was written to mem. OVERLAP, OUTSIDE_TANK, SINGULAR: mem
+/// holds no simulation. Any thread; the simulation is then used by one thread at a time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_init(
     mem: *mut c_void,
@@ -204,8 +205,10 @@ pub unsafe extern "C" fn nekton32_sim_free(sim: *mut SimHandle<f32>) -> nekton_s
     unsafe { report(null_mut(), model::free_sim(sim)) }
 }
 
-/// Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past, channels, counters.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read from while nobody uses it.
+/// Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
+/// channels, counters.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
+/// from while nobody uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_copy(
     to: *mut SimHandle<f32>,
@@ -251,8 +254,8 @@ pub unsafe extern "C" fn nekton32_sim_velocities(sim: *const SimHandle<f32>, qd:
     unsafe { report(null_mut(), sim::shown(sim, qd, n, true)) }
 }
 
-/// Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the drives if
-/// anything is driven; n = state_len of the plan.
+/// Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the
+/// drives if anything is driven; n = state_len of the plan.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_get_state(
@@ -266,7 +269,8 @@ pub unsafe extern "C" fn nekton32_sim_get_state(
 }
 
 /// Sets time and state as nekton32_sim_get_state gives them; the integrator starts anew.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as it was. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT; the simulation is then as
+/// it was. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_set_state(
     sim: *mut SimHandle<f32>,
@@ -288,17 +292,18 @@ pub unsafe extern "C" fn nekton32_sim_restart(sim: *mut SimHandle<f32>) -> nekto
 }
 
 /// One step of the method (ADAMS: one step of its own choice).
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the simulation is then as it was, bit for bit. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
+/// simulation is then as it was, bit for bit. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_step(sim: *mut SimHandle<f32>, diag: *mut nekton_diag) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
     unsafe { report(diag, sim::step(sim)) }
 }
 
-/// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is the step
-/// function of a controller: set channels, advance by a sample time, read the state.
-/// Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then as it was
-/// before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+/// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
+/// the step function of a controller: set channels, advance by a sample time, read the state.
+/// Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+/// as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_advance(
     sim: *mut SimHandle<f32>,
@@ -309,8 +314,8 @@ pub unsafe extern "C" fn nekton32_sim_advance(
     unsafe { report(diag, sim::advance(sim, t_end, t_end)) }
 }
 
-/// Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance when output is
-/// wanted at many times: ADAMS keeps its steps and interpolates.
+/// Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
+/// when output is wanted at many times: ADAMS keeps its steps and interpolates.
 /// Errors: as nekton32_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_advance_dense(
@@ -323,9 +328,11 @@ pub unsafe extern "C" fn nekton32_sim_advance_dense(
     unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
 }
 
-/// Sets a channel (NEKTON_SIGNAL_CHANNEL, counted in the order of bodies, their roots, then joints): (t, u, du/dt, d2u/dt2), 4 numbers
-/// each, at both ends of the coming interval, quintic in between, constant outside. For a torque only u counts. The integrator starts anew.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no such channel). One thread per simulation.
+/// Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,
+/// d2u/dt2 (4 numbers) at both ends of the coming interval, quintic in between, constant outside. For a torque
+/// these are the torque and its rates. The integrator starts anew.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no
+/// such channel). One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_set_channel(
     sim: *mut SimHandle<f32>,
@@ -338,9 +345,10 @@ pub unsafe extern "C" fn nekton32_sim_set_channel(
     unsafe { report(diag, sim::set_channel(sim, channel, from.cast(), to.cast())) }
 }
 
-/// Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton32_sim_get_state, n = state_len, not overlapping.
-/// The simulation's own state does not change.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE; ydot is then 0. One thread per simulation.
+/// Right-hand side dy/dt for an integrator of your own; y and ydot as in nekton32_sim_get_state, n = state_len, not
+/// overlapping. The simulation's own state does not change.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, NOT_FINITE, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE;
+/// ydot is then 0. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_rhs(
     sim: *mut SimHandle<f32>,
@@ -368,7 +376,8 @@ pub unsafe extern "C" fn nekton32_sim_joint_values(
 }
 
 /// Torque (slider: force) that drives every joint, and its power; n = joints each.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One evaluation if there was none since the last step. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One
+/// evaluation if there was none since the last step. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_joint_torques(
     sim: *mut SimHandle<f32>,
@@ -382,7 +391,8 @@ pub unsafe extern "C" fn nekton32_sim_joint_torques(
 }
 
 /// Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_accelerations(
     sim: *mut SimHandle<f32>,
@@ -395,7 +405,8 @@ pub unsafe extern "C" fn nekton32_sim_accelerations(
 }
 
 /// Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_mass_matrix(
     sim: *mut SimHandle<f32>,
@@ -408,7 +419,8 @@ pub unsafe extern "C" fn nekton32_sim_mass_matrix(
 }
 
 /// Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_added_mass(
     sim: *mut SimHandle<f32>,
@@ -420,8 +432,10 @@ pub unsafe extern "C" fn nekton32_sim_added_mass(
     unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.added_mass(out))) }
 }
 
-/// Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
+/// none since the last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_christoffel(
     sim: *mut SimHandle<f32>,
@@ -433,8 +447,10 @@ pub unsafe extern "C" fn nekton32_sim_christoffel(
     unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.christoffel(out))) }
 }
 
-/// Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For inspection: (3 links)^2 forces.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
+/// inspection: (3 links)^2 forces.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_christoffel_tensor(
     sim: *mut SimHandle<f32>,
@@ -446,8 +462,10 @@ pub unsafe extern "C" fn nekton32_sim_christoffel_tensor(
     unsafe { report(diag, sim::ask(sim, out, n, 3, |s, out| s.christoffel_tensor(out))) }
 }
 
-/// Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
+/// last step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_buoyancy(
     sim: *mut SimHandle<f32>,
@@ -459,8 +477,10 @@ pub unsafe extern "C" fn nekton32_sim_buoyancy(
     unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.buoyancy(out))) }
 }
 
-/// Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
+/// step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_repulsion(
     sim: *mut SimHandle<f32>,
@@ -472,8 +492,10 @@ pub unsafe extern "C" fn nekton32_sim_repulsion(
     unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.repulsion(out))) }
 }
 
-/// Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
+/// step.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_circulation_gradient(
     sim: *mut SimHandle<f32>,
@@ -486,7 +508,8 @@ pub unsafe extern "C" fn nekton32_sim_circulation_gradient(
 }
 
 /// Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_gyroscopic(
     sim: *mut SimHandle<f32>,

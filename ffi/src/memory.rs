@@ -118,16 +118,24 @@ pub(crate) fn sim_req<R: Real>(model: &Model<'_, R>) -> Outcome<nekton_req> {
     Ok(nekton_req { size: round(sum.bytes()?)?, align: ALIGN })
 }
 
-/// Refuses memory that is NULL, misaligned or short. Writes nothing.
-pub(crate) fn check_memory(mem: *mut u8, len: usize, req: &nekton_req) -> Outcome {
+/// Whether two stretches of memory have a byte in common.
+fn overlap(a: usize, a_len: usize, b: usize, b_len: usize) -> bool {
+    a < b.saturating_add(b_len) && b < a.saturating_add(a_len)
+}
+
+/// Refuses memory that is NULL, misaligned or short, or that what it is made from lies in. Writes nothing.
+pub(crate) fn check_memory(mem: *mut u8, len: usize, req: &nekton_req, source: (usize, usize)) -> Outcome {
     if mem.is_null() {
         return Err(Fault::of(Status::NullPointer, "mem", f64::NAN));
     }
-    if mem.addr() % ALIGN != 0 {
+    if !mem.addr().is_multiple_of(ALIGN) {
         return Err(Fault::of(Status::Misaligned, "mem", ALIGN as f64));
     }
     if len < req.size {
         return Err(Fault::of(Status::MemoryTooSmall, "len", len as f64));
+    }
+    if overlap(mem.addr(), req.size, source.0, source.1) {
+        return Err(Fault::of(Status::Aliasing, "mem", f64::NAN));
     }
     Ok(())
 }
@@ -338,7 +346,7 @@ pub(crate) struct SimParts<'a, R> {
     pub(crate) reals: &'a mut [R],
     saved_head: &'a mut SimHead<R>,
     saved: &'a mut [R],
-    /// The object's bytes: no buffer of the caller may lie among them.
+    /// Where the object is, and its bytes: no buffer of the caller may lie among them.
     range: (usize, usize),
 }
 
@@ -356,7 +364,7 @@ pub(crate) unsafe fn sim<'a, R: Real>(handle: *const SimHandle<R>) -> Outcome<Si
             reals: core::slice::from_raw_parts_mut(first, o.reals),
             saved_head: o.saved.assume_init_mut(),
             saved: core::slice::from_raw_parts_mut(first.add(o.reals), o.kept),
-            range: (object.addr(), object.addr() + o.bytes),
+            range: (object.addr(), o.bytes),
         })
     }
 }
@@ -391,8 +399,7 @@ impl<R: Real> SimParts<'_, R> {
 
     /// Whether a buffer of the caller lies within this object.
     pub(crate) fn overlaps<T>(&self, first: *const T, n: usize) -> bool {
-        let begin = first.addr();
-        begin < self.range.1 && self.range.0 < begin.saturating_add(n.saturating_mul(size_of::<T>()))
+        overlap(first.addr(), n.saturating_mul(size_of::<T>()), self.range.0, self.range.1)
     }
 }
 

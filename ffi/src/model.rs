@@ -148,7 +148,7 @@ pub(crate) unsafe fn init<R: Real>(
     unsafe {
         let scene = Checked::new(def)?;
         let need = Model::requirement(&scene)?;
-        check_memory(mem, len, &model_req::<R>(&need)?)?;
+        check_memory(mem, len, &model_req::<R>(&need)?, (def.addr(), size_of::<SceneDef<R>>()))?;
         let mut parts = begin_model(mem, &need)?;
         let head = Model::init(&scene, &mut parts.memory)?;
         let handle = parts.finish(head, owned)?;

@@ -2,7 +2,7 @@
 
 use crate::convert::{check_pointer, method as read_method};
 use crate::diag::{Fault, Outcome, place_or_none};
-use crate::memory::{SimParts, check_memory, make_sim, model, remembered, sim, sim_req};
+use crate::memory::{SimParts, check_memory, make_sim, model, model_bytes, remembered, sim, sim_req};
 use crate::model::give;
 use crate::types::*;
 use nekton::{Method, Real, Result, Sim, Status};
@@ -40,7 +40,7 @@ pub(crate) unsafe fn init<R: Real>(
     unsafe {
         let model = model(handle)?;
         let head = Sim::head(method(def)?)?;
-        check_memory(mem, len, &sim_req(&model)?)?;
+        check_memory(mem, len, &sim_req(&model)?, (handle.addr(), model_bytes(handle)?))?;
         give(out, make_sim(mem, handle, head, owned)?)
     }
 }

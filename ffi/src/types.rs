@@ -40,7 +40,8 @@ pub struct ShapeDef<R> {
     pub height: R,
     /// Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default.
     pub corner_radius: R,
-    /// Polygon, curve: x, y of each point in order (the last joins the first).
+    /// Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+    /// double (*)[2] to this type without a cast.
     pub points: *const [R; 2],
     /// Number of points.
     pub point_count: usize,
@@ -95,7 +96,7 @@ pub struct SignalDef<R> {
     pub harmonic_count: usize,
     /// Harmonic: the window.
     pub window: WindowDef<R>,
-    /// Table: the rows.
+    /// Table: the rows, const as the points of a shape.
     pub rows: *const [R; 4],
     /// Number of rows.
     pub row_count: usize,

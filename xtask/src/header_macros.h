@@ -35,7 +35,7 @@
 #define NEKTON_P_U(bodies, joints, nodes, walls, wall_nodes) \
     (NEKTON_P_L(bodies, joints) * NEKTON_P_S(nodes) + NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes))
 #define NEKTON_P_KEPT(bodies, joints, walls, channels) \
-    (48 * NEKTON_P_C(bodies, joints) + 10 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
+    (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
      ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + NEKTON_P_S(circulation) * (u) * ((u) + 7))

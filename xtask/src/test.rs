@@ -11,7 +11,7 @@ const BARE_TARGETS: [&str; 4] =
 /// Runs everything that the project promises.
 pub fn run() -> ExitCode {
     let mut steps = Steps::default();
-    steps.run("linker", || match require(&[("cc", "gcc")]) {
+    steps.run("compilers", || match require(&[("cc", "gcc"), ("c++", "g++")]) {
         Ok(()) => Outcome::Passed,
         Err(why) => Outcome::Failed(why),
     });
@@ -23,6 +23,10 @@ pub fn run() -> ExitCode {
         &mut cargo(&["build", "--package", "nekton", "--no-default-features", "--features", "alloc"]),
     );
     steps.run("core for a bare target", bare);
+    steps.command(
+        "C interface without std",
+        &mut cargo(&["build", "--package", "nekton-ffi", "--no-default-features", "--profile", "embedded"]),
+    );
     steps.command("tests", &mut cargo(&["test", "--workspace", "--no-fail-fast"]));
     steps.command(
         "core tests with fft and faer",
