@@ -368,7 +368,7 @@ classdef Nekton < handle
                 if isempty(options.frames)
                     drawnow();
                 else
-                    print(gcf(), fullfile(options.frames, sprintf('frame_%04d.png', k)), '-dpng', '-r72');
+                    nekton_print(gcf(), fullfile(options.frames, sprintf('frame_%04d.png', k)));
                 end
             end
         end

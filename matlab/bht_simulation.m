@@ -64,7 +64,7 @@ for i = 1:options.Every:numel(r.T)
         drawnow();
     else
         files{end + 1} = fullfile(folder, sprintf('frame_%04d.png', numel(files) + 1)); %#ok<AGROW>
-        print(fig, files{end}, '-dpng', '-r72');
+        nekton_print(fig, files{end});
     end
 end
 delete(sim);

@@ -43,7 +43,7 @@ for k = 1:n
         if isempty(folder)
             drawnow();
         else
-            print(show, fullfile(folder, sprintf('frame_%04d.png', (k + 3) / 4)), '-dpng', '-r72');
+            nekton_print(show, fullfile(folder, sprintf('frame_%04d.png', (k + 3) / 4)));
         end
     end
 end
@@ -65,7 +65,7 @@ legend('front', 'rear', 'tail', 'location', 'northwest');
 ylabel('torque');
 xlabel('t');
 if ~isempty(folder)
-    print(plots, fullfile(folder, 'fish.png'), '-dpng', '-r96');
+    nekton_print(plots, fullfile(folder, 'fish.png'));
     close(show);
     close(plots);
 end
