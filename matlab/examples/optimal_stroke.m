@@ -1,7 +1,7 @@
 function [best, history] = optimal_stroke(varargin)
 %OPTIMAL_STROKE  The cheapest stroke of a three-link swimmer for a given displacement.
 %   optimal_stroke          searches, shows the progress and plots the stroke before and after
-%   optimal_stroke(file)    writes the plot into a PNG file
+%   optimal_stroke(file)    writes the plot into a PNG file;  optimal_stroke(file, n) tries about n strokes instead of 60
 %   [best, history] = ...   parameters of the stroke found, and the cost after each iteration
 %
 %   Minimized is the integral of |nu|^2 over one period, where nu are the torques in the two joints ((7.5) in Munnier and
@@ -16,7 +16,11 @@ start = [0.5, 0.5, -2.3];
 fprintf('displacement asked for: %.3f\n', asked);
 history = [];
 first = scaled(start, asked);
-options = optimset('MaxFunEvals', 60, 'TolX', 1e-3, 'TolFun', 1e-4, 'Display', 'off');
+tries = 60;
+if nargin > 1
+    tries = varargin{2};
+end
+options = optimset('MaxFunEvals', tries, 'TolX', 1e-3, 'TolFun', 1e-4, 'Display', 'off');
 ratio = fminsearch(@cost, [start(2) / start(1), start(3)], options);
 best = scaled([1, ratio], asked);
 if best.cost > first.cost
