@@ -5,16 +5,16 @@ function reference_compare()
 
 here = fileparts(mfilename('fullpath'));
 addpath(here, fileparts(here));
-reference_compare_scene('two_ellipses', 1e-5, [80 96 128], [1e-6 1e-7 1e-8], [-4.4566299139; -0.0703918602; 2.6164405953]);
+reference_compare_scene('two_ellipses', 1e-5, 'adams', [96 128], [1e-7 1e-8], [-4.4566299139; -0.0703918602; 2.6164405953]);
 
-[~, ~, t_end, own] = reference_scenes('fish', 128);
-sim = Nekton(own, 'tolerance', 1e-9);
+[~, ~, t_end, own] = reference_scenes('fish', 96);
+sim = Nekton(own, 'tolerance', 1e-8);
 sim.advance(t_end);
 q = sim.positions();
-reference_compare_scene('fish', 1e-5, [64 80 96], [1e-5 1e-6], q(:, 1));
+reference_compare_scene('fish', 1e-3, 'ode45', [48 64 80], [1e-4 1e-5], q(:, 1));
 end
 
-function reference_compare_scene(name, accuracy, nodes, tolerances, exact)
+function reference_compare_scene(name, accuracy, solver, nodes, tolerances, exact)
 fprintf('%s, final position to %.0e\n', name, accuracy);
 fprintf('  %-10s %6s %10s %10s %12s %9s\n', '', 'nodes', 'tolerance', 'error', 'evaluations', 'time, s');
 best = [Inf, Inf];
@@ -31,7 +31,7 @@ for tool = 1:2
                 evaluations = sim.counters();
                 evaluations = evaluations.evaluations;
             else
-                [q, evaluations] = reference_solve(scene, y, [0 t_end], tolerance);
+                [q, evaluations] = reference_solve(scene, y, [0 t_end], tolerance, solver);
             end
             time = toc(start);
             wrong = max(abs(reshape(q(1:3), [], 1) - exact));

@@ -21,6 +21,8 @@ near(dy(4:6), a(:, 1), 1e-6);
 [scene, y, ~, own] = reference_scenes('two_ellipses', 64);
 sim = Nekton(own, 'tolerance', 1e-8);
 sim.advance(3);
-y = reference_solve(scene, y, [0 3], 1e-8);
-near(y, sim.state(), 1e-5);
+for solver = {'adams', 'ode45'}
+    end_state = reference_solve(scene, y, [0 3], 1e-8, solver{1});
+    near(end_state, sim.state(), 1e-5);
+end
 end
