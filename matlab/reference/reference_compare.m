@@ -5,7 +5,7 @@ function reference_compare()
 
 here = fileparts(mfilename('fullpath'));
 addpath(here, fileparts(here));
-reference_compare_scene('two_ellipses', 1e-5, 'adams', [96 128], [1e-7 1e-8], [-4.4566299139; -0.0703918602; 2.6164405953]);
+reference_compare_scene('two_ellipses', 1e-5, 'adams', [80 96 128], [1e-7 1e-8 1e-9], [-4.4566299139; -0.0703918602; 2.6164405953]);
 
 [~, ~, t_end, own] = reference_scenes('fish', 96);
 sim = Nekton(own, 'tolerance', 1e-8);

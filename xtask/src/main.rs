@@ -1,5 +1,12 @@
 //! Developer commands: `cargo xtask test` is the whole test run.
 
+mod archive;
+mod bare;
+mod c;
+mod dist;
+mod expected;
+mod firmware;
+mod fuzz;
 mod header;
 mod steps;
 mod test;
@@ -9,8 +16,16 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: cargo xtask <command>
 
 commands:
-  test    everything: format, lints, builds without std and without heap, tests, documentation, scenes
-  header  include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
+  test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
+  firmware   docs/embedded.csv: size and speed on emulated microcontrollers
+  prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  fuzz --minutes N
+             bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
+  symbols    include/nekton.symbols from ffi/src
+  c          what users of C and C++ meet: examples, wrapper, installed package
+  dist --prefix P
+             headers, libraries, pkg-config file and CMake package into folder P
+  header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
 fn main() -> ExitCode {
@@ -18,6 +33,12 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["firmware"] => firmware::run(),
+        ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
+        ["prelink"] => archive::write_prelinked(),
+        ["symbols"] => archive::write_symbols(),
+        ["c"] => c::run(),
+        ["dist", "--prefix", prefix] => dist::run(prefix),
         ["header"] => header::run(),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");

@@ -95,6 +95,19 @@ pub fn execute(command: &mut Command) -> Outcome {
     }
 }
 
+/// Runs a command and gives what it prints; the error names the command and what it says.
+pub fn ask(command: &mut Command) -> Result<String, String> {
+    let line = format!("{command:?}");
+    let output = command.output().map_err(|error| format!("{line}: {error}"))?;
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if output.status.success() { Ok(out.into_owned()) } else { Err(format!("{line}: {}\n{out}{err}", output.status)) }
+}
+
+/// A file's text; the error names the file.
+pub fn read(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
 /// What a command prints, or `None` when it fails.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).stderr(Stdio::null()).output().ok()?;
@@ -113,7 +126,13 @@ pub fn require(programs_and_packages: &[(&str, &str)]) -> Result<(), String> {
         return Ok(());
     }
     if output("id", &["-u"]).as_deref() == Some("0") && output("sh", &["-c", "command -v apt-get"]).is_some() {
-        let _ = execute(Command::new("apt-get").args(["install", "--yes", "--no-install-recommends"]).args(&packages));
+        let install =
+            || execute(Command::new("apt-get").args(["install", "--yes", "--no-install-recommends"]).args(&packages));
+        // On a fresh machine the package lists are missing or stale.
+        if !matches!(install(), Outcome::Passed) {
+            let _ = execute(Command::new("apt-get").args(["update", "--quiet"]));
+            let _ = install();
+        }
     }
     match missing() {
         rest if rest.is_empty() => Ok(()),

@@ -1,12 +1,15 @@
 //! `cargo xtask test`.
 
-use crate::steps::{Outcome, Steps, cargo, execute, output, require, root};
-use std::path::{Path, PathBuf};
+use crate::bare::{CORTEX_M, Compiler, compiler, installed};
+use crate::c;
+use crate::firmware;
+use crate::steps::{Outcome, Steps, cargo, execute, require, root};
+use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 /// Targets without an operating system for which core is built when their `core` library is installed.
 const BARE_TARGETS: [&str; 4] =
-    ["thumbv7em-none-eabihf", "riscv32imafc-unknown-none-elf", "wasm32-unknown-unknown", "x86_64-unknown-none"];
+    [CORTEX_M, "riscv32imafc-unknown-none-elf", "wasm32-unknown-unknown", "x86_64-unknown-none"];
 
 /// Runs everything that the project promises.
 pub fn run() -> ExitCode {
@@ -23,10 +26,13 @@ pub fn run() -> ExitCode {
         &mut cargo(&["build", "--package", "nekton", "--no-default-features", "--features", "alloc"]),
     );
     steps.run("core for a bare target", bare);
-    steps.command(
-        "C interface without std",
-        &mut cargo(&["build", "--package", "nekton-ffi", "--no-default-features", "--profile", "embedded"]),
-    );
+    steps.run("embedded archive, program without operating system", || match firmware::freestanding() {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    });
+    for board in firmware::boards() {
+        steps.run(&format!("firmware {board}"), || firmware::step(board));
+    }
     steps.command("tests", &mut cargo(&["test", "--workspace", "--no-fail-fast"]));
     steps.command(
         "core tests with fft and faer",
@@ -36,25 +42,27 @@ pub fn run() -> ExitCode {
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     );
+    c::add(&mut steps);
     scenes(&mut steps);
     steps.run("matlab (in octave)", matlab);
     steps.finish()
 }
 
-/// Builds core for every bare target that is installed.
+/// Builds core for every bare target that is installed, and at least for one.
 fn bare() -> Outcome {
-    let installed = |target: &&&str| {
-        let folder = output("rustc", &["--print", "target-libdir", "--target", target]);
-        folder.is_some_and(|folder| Path::new(&folder).is_dir())
-    };
-    let targets: Vec<&str> = BARE_TARGETS.iter().filter(installed).copied().collect();
+    let mut targets: Vec<&str> = BARE_TARGETS.into_iter().filter(|target| installed(target)).collect();
+    let mut with = Compiler::usual();
     if targets.is_empty() {
-        return Outcome::Skipped(format!("no such target installed; try: rustup target add {}", BARE_TARGETS[0]));
+        targets.push(CORTEX_M);
+        with = match compiler(CORTEX_M) {
+            Ok(compiler) => compiler,
+            Err(why) => return Outcome::Skipped(why),
+        };
     }
     for target in targets {
         let build =
             ["build", "--package", "nekton", "--no-default-features", "--profile", "embedded", "--target", target];
-        let outcome = execute(&mut cargo(&build));
+        let outcome = execute(with.used_by(&mut cargo(&build)));
         if !matches!(outcome, Outcome::Passed) {
             return outcome;
         }

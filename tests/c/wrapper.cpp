@@ -1,0 +1,99 @@
+// Every member function of the wrapper compiles in both precisions, with and without exceptions; objects move, refuse and end
+// as documented.
+#include "nekton.hpp"
+#include <cstdint>
+#include <cstdio>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+template class nekton::BasicModel<double>;
+template class nekton::BasicModel<float>;
+template class nekton::BasicSim<double>;
+template class nekton::BasicSim<float>;
+template class nekton::Span<double>;
+
+static_assert(!std::is_copy_constructible_v<nekton::Model> && !std::is_copy_assignable_v<nekton::Model>);
+static_assert(!std::is_copy_constructible_v<nekton::Sim> && !std::is_copy_assignable_v<nekton::Sim>);
+static_assert(std::is_nothrow_move_constructible_v<nekton::Model> && std::is_nothrow_move_assignable_v<nekton::Sim>);
+static_assert(!std::is_constructible_v<nekton::Body, nekton::Link &&>, "a body must not point to a link that is gone");
+
+#define CHECK(x)                                                                                                               \
+    do {                                                                                                                       \
+        if (!(x)) {                                                                                                            \
+            std::fprintf(stderr, "line %d: %s\n", __LINE__, #x);                                                               \
+            return 1;                                                                                                          \
+        }                                                                                                                      \
+    } while (0)
+
+template <class R> int run()
+{
+    nekton::BasicLink<R> link = nekton::BasicLink<R>::ellipse(R(0.5), R(0.2));
+    nekton::BasicBody<R> body(link);
+    body.velocity[0] = R(0.3);
+    body.velocity[2] = R(0.2);
+    const nekton::BasicScene<R> scene(body);
+    const auto method = nekton::BasicMethod<R>::rk4(R(0.1));
+
+    nekton::BasicModel<R> model(scene);
+    nekton::BasicSim<R> sim(model, method);
+    CHECK(model && sim && model.plan().links == 1);
+    // Both move; the simulation goes on.
+    nekton::BasicModel<R> moved_model = std::move(model);
+    nekton::BasicSim<R> moved;
+    moved = std::move(sim);
+    CHECK(!model && !sim && moved && moved_model);
+    CHECK(moved.advance(R(1)) == NEKTON_OK && moved.time() == R(1));
+    CHECK(moved.model() == moved_model.get());
+    // A copy goes on exactly alike.
+    nekton::BasicSim<R> other(moved_model, method);
+    CHECK(other.copy_from(moved) == NEKTON_OK);
+    R q[3], p[3];
+    CHECK(moved.step() == NEKTON_OK && other.step() == NEKTON_OK);
+    CHECK(moved.positions(q) == NEKTON_OK && other.positions(p) == NEKTON_OK);
+    CHECK(q[0] == p[0] && q[1] == p[1] && q[2] == p[2] && moved.counters().steps == 11);
+    // Memory of the caller.
+    nekton_req req = {};
+    CHECK(nekton::BasicModel<R>::req(scene, req) == NEKTON_OK);
+    std::vector<std::uint64_t> place(req.size / 8 + 1);
+    nekton::BasicModel<R> placed(place.data(), 8 * place.size(), scene);
+    CHECK(placed && placed.plan().model_bytes == req.size);
+
+    nekton_diag diag = {};
+    R two[2];
+#ifdef NEKTON_NO_EXCEPTIONS
+    CHECK(moved.positions(two) == NEKTON_E_LENGTH);
+    CHECK(moved.advance(R(0), &diag) == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP);
+    CHECK(moved.rhs(R(0), two, q, &diag) == NEKTON_E_LENGTH);
+    link.nodes = 7;
+    nekton::BasicModel<R> refused(scene, &diag);
+    CHECK(!refused && diag.status == NEKTON_E_NODE_COUNT && diag.value == 7.0);
+#else
+    int caught = 0;
+    try {
+        moved.positions(two);
+    } catch (const nekton::Error &error) {
+        caught += error.status() == NEKTON_E_LENGTH;
+    }
+    try {
+        moved.advance(R(0), &diag);
+    } catch (const nekton::Error &error) {
+        caught += error.status() == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP;
+    }
+    try {
+        moved.rhs(R(0), two, q);
+    } catch (const nekton::Error &error) {
+        caught += error.status() == NEKTON_E_LENGTH;
+    }
+    try {
+        link.nodes = 7;
+        nekton::BasicModel<R> refused(scene);
+    } catch (const nekton::Error &error) {
+        caught += error.status() == NEKTON_E_NODE_COUNT && error.diag().value == 7.0;
+    }
+    CHECK(caught == 4);
+#endif
+    return 0;
+}
+
+int main() { return run<double>() + run<float>(); }
