@@ -47,6 +47,7 @@ scene.body(1).link.shape = struct('curve', [1 2 3]);
 raises('nekton:arg:size', @() Nekton(scene));
 raises('nekton:scene:shape', @() Nekton(struct('body', struct('link', struct('shape', struct('radius', 1), 'density', 1)))));
 raises('nekton:scene:motion', @() Nekton(swimmer()));
+raises('nekton:arg:controls', @() Nekton(swimmer('control')));
 raises('nekton:arg:option', @() Nekton(eggs(), 'speed', 1));
 raises('nekton:scene:file', @() Nekton('no_such_file.json'));
 
