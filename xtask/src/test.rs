@@ -5,7 +5,7 @@ use crate::c;
 use crate::firmware;
 use crate::steps::{Outcome, Steps, cargo, execute, require, root};
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 /// Targets without an operating system for which core is built when their `core` library is installed.
 const BARE_TARGETS: [&str; 4] =
@@ -44,6 +44,7 @@ pub fn run() -> ExitCode {
     );
     c::add(&mut steps);
     scenes(&mut steps);
+    steps.run("matlab (in octave)", matlab);
     steps.finish()
 }
 
@@ -67,6 +68,25 @@ fn bare() -> Outcome {
         }
     }
     Outcome::Passed
+}
+
+/// Builds the gateway of `matlab/` and runs its tests in Octave.
+fn matlab() -> Outcome {
+    // From gnuplot on for figures; the font, which has no program, comes with ghostscript.
+    let programs = [
+        ("octave-cli", "octave"),
+        ("mkoctfile", "octave-dev"),
+        ("gnuplot", "gnuplot-nox"),
+        ("gs", "ghostscript"),
+        ("gs", "fonts-freefont-otf"),
+    ];
+    if let Err(why) = require(&programs) {
+        return Outcome::Skipped(why);
+    }
+    let mut octave = Command::new("octave-cli");
+    // Without a history Octave does not complain when it exits.
+    octave.args(["--norc", "--no-history", "--quiet", "--eval", "build_nekton('force'); run_tests"]);
+    execute(octave.current_dir(root().join("matlab")))
 }
 
 /// Runs every scene with the command, each as a step.

@@ -1,0 +1,50 @@
+function build_nekton(varargin)
+%BUILD_NEKTON  Build the gateway nekton_mex, in Matlab or in Octave.
+%   build_nekton           builds nekton_mex in the folder of this file. The library itself is built by cargo
+%                          (https://rustup.rs) when target/release has none.
+%   build_nekton('force')  lets cargo bring the library up to date first.
+%
+%   Nothing is to be installed besides a C compiler and, for the library, Rust. The result contains the library.
+
+here = fileparts(mfilename('fullpath'));
+root = fileparts(here);
+archive = fullfile(root, 'target', 'release', 'libnekton_ffi.a');
+if ispc()
+    archive = fullfile(root, 'target', 'release', 'nekton_ffi.lib');
+end
+if any(strcmp(varargin, 'force')) || exist(archive, 'file') ~= 2
+    command = sprintf('cargo build --release --package nekton-ffi --manifest-path "%s"', fullfile(root, 'Cargo.toml'));
+    disp(command);
+    if system(command) ~= 0
+        error('nekton:build:cargo', 'cargo failed; it is part of Rust, see https://rustup.rs');
+    end
+end
+
+source = fullfile(here, 'nekton_mex.c');
+include = ['-I' fullfile(root, 'include')];
+map = fullfile(here, 'nekton.map');
+clear nekton_mex
+if exist('OCTAVE_VERSION', 'builtin')
+    options = {};
+    if isunix() && ~ismac()
+        % Only mexFunction is to be seen from outside: the library's symbols must not meet those of other files.
+        options = {['-Wl,--version-script=' map], '-Wl,--gc-sections', '-s', '-lpthread', '-ldl', '-lm'};
+    end
+    target = fullfile(here, ['nekton_mex.' mexext()]);
+    [output, status] = mkoctfile('--mex', include, '-Wall', '-o', target, source, archive, options{:});
+    object = fullfile(pwd(), 'nekton_mex.o');
+    if exist(object, 'file') == 2
+        delete(object);
+    end
+    if status ~= 0
+        error('nekton:build:mkoctfile', 'mkoctfile failed (package octave-dev):\n%s', output);
+    end
+elseif isunix() && ~ismac()
+    mex(include, '-outdir', here, ['LDFLAGS=$LDFLAGS -Wl,--version-script=' map], source, archive, '-lpthread', '-ldl', '-lm');
+elseif ismac()
+    mex(include, '-outdir', here, source, archive);
+else
+    mex(include, '-outdir', here, source, archive, '-lws2_32', '-luserenv', '-lntdll', '-lbcrypt', '-ladvapi32');
+end
+fprintf('built nekton_mex in %s\n', here);
+end
