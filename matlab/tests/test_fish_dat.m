@@ -21,5 +21,5 @@ near(sum(sum(r.power)) * 0.1, 0, 1e-6);
 middle = 1:101;
 work = cumsum(sum(r.power(middle, :), 2)) * 0.1;
 energy = r.E_fl(middle) + r.E_fi(middle);
-near(work(end) - 0.05 * sum(r.power(101, :)), energy(end), 2e-2 * max(energy));
+near(work(end) - 0.05 * sum(r.power(101, :)), energy(end), 1e-3); % measured 1e-4, the rule's own error
 end
