@@ -377,4 +377,5 @@ end
 fprintf(id, '%% If dc is not 0 at t = 0 the body may drift: its initial velocity then does not mean that all of it is at rest.\n');
 fprintf(id, 'c = zeros(%d, 1);\ndc = zeros(%d, 1);\ndttc = zeros(%d, 1);\nend\n', n, n, n);
 fclose(id);
+rehash();
 end
