@@ -278,7 +278,7 @@ typedef struct nekton_shape {
     double corner_radius;
     /**
      * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
-     * double (*)[2] to this type without a cast.
+     * `double (*)[2]` to this type without a cast.
      */
     const double (*points)[2];
     /** Number of points. */
@@ -593,7 +593,7 @@ typedef struct nekton32_shape {
     float corner_radius;
     /**
      * Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
-     * double (*)[2] to this type without a cast.
+     * `double (*)[2]` to this type without a cast.
      */
     const float (*points)[2];
     /** Number of points. */

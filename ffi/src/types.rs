@@ -41,7 +41,7 @@ pub struct ShapeDef<R> {
     /// Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default.
     pub corner_radius: R,
     /// Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
-    /// double (*)[2] to this type without a cast.
+    /// `double (*)[2]` to this type without a cast.
     pub points: *const [R; 2],
     /// Number of points.
     pub point_count: usize,

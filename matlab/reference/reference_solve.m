@@ -1,6 +1,6 @@
 function [y, evaluations] = reference_solve(scene, y, t, tolerance, solver)
 %REFERENCE_SOLVE  State at the last of the times t by 'ode45' or by a solver of Adams type, 'adams': ode113 in Matlab,
-%   lsode in Octave. (lsode does not always notice a stroke that begins infinitely slowly: use ode45 for the fish.)
+%   lsode in Octave. (Use ode45 for the fish: lsode left errors of 0.1 at some tolerances, for a reason not found.)
 counter = containers.Map({'n'}, {0});
 f = @(t, y) rate(t, y, scene, counter);
 options = odeset('RelTol', tolerance, 'AbsTol', tolerance, 'MaxStep', 1);
