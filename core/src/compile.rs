@@ -132,8 +132,13 @@ fn head<R: Real, S: Description<R>>(
     let walls = wall_count(scene);
     let stepping = traits.fluid && traits.formulation != Formulation::Kirchhoff;
     let unknowns = if stepping { layout.unknowns } else { 0 };
-    // Columns of the boundary system, one transposed and one ordinary solve for the force, and for circulation
-    // its potential, its transposed potential and the rate of its potential.
+    // Columns of the boundary system; for the force the adjoint and one solve for each half of the symmetrized added mass,
+    // none for a lone swimmer whose work nobody drives, two more where the power of prescribed motion is tracked; for
+    // circulation its potential, its adjoint and the rate of its potential.
+    let forces = match traits.formulation {
+        Formulation::LockedMomentum if !tracks_work => 0,
+        _ => 3 + if prescribed_moves { 2 } else { 0 },
+    };
     let columns = free + usize::from(prescribed_moves);
     let circulation =
         if traits.circulation { 2 + usize::from(settings.circulation == CirculationModel::Full) } else { 0 };
@@ -143,7 +148,7 @@ fn head<R: Real, S: Description<R>>(
         walls,
         unknowns,
         moving_unknowns: if stepping { layout.unknowns - layout.wall_nodes } else { 0 },
-        right_hand_sides: if stepping { columns + 2 + circulation } else { 0 },
+        right_hand_sides: if stepping { columns + forces + circulation } else { 0 },
         free_coordinates: free,
         prescribed_coordinates: coordinates.len() - free,
         state_len: motion + usize::from(tracks_work),

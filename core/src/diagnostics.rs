@@ -368,7 +368,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// Error indicators of the space discretization at the state shown. 12n + 2 solves.
+    /// Error indicators of the space discretization at the state shown. 6n + 6 solves for n links, two passes over the pairs.
     ///
     /// # Errors
     /// As [`Sim::energy`].
