@@ -136,6 +136,7 @@ impl SceneFile {
             obstacles: &obstacles,
             bodies: &bodies,
             force: self.force,
+            quadrature: nekton::scene::Quadrature::default(),
             shortcuts: self.shortcuts,
         })
     }

@@ -25,6 +25,8 @@ pub struct Scene<'a, R> {
     pub bodies: &'a [Body<'a, R>],
     /// Formula of the Christoffel force.
     pub force: ForceFormula,
+    /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
+    pub quadrature: Quadrature,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
 }
@@ -105,6 +107,17 @@ pub enum ForceFormula {
     /// The boundary integral (2.15), as an independent cross-check, for every scene: one transposed solve gives the whole
     /// force. Agrees with the exact gradient where space is resolved; conserves energy only there.
     Boundary,
+}
+
+/// Quadrature of boundary integrals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Quadrature {
+    /// Nodes crowd where boundaries face each other, and the pole of the kernel beside a boundary is integrated in closed
+    /// form: spectral accuracy down to tiny gaps. Costs nothing for pairs that are far apart.
+    #[default]
+    Graded,
+    /// Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed.
+    Plain,
 }
 
 /// A fixed boundary.
@@ -324,6 +337,7 @@ impl<R: Real> Scene<'_, R> {
             obstacles: &[],
             bodies: &[],
             force: ForceFormula::ExactGradient,
+            quadrature: Quadrature::Graded,
             shortcuts: true,
         }
     }
