@@ -166,14 +166,7 @@ pub(crate) fn signed_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &
 ///
 /// Solved is x'(s)·n(t) = 0 and (x − y)·y'(t) = 0 with n the normal of the second outline, which does not degenerate as
 /// the distance vanishes and continues to the deepest point of a slight overlap.
-fn refine<R: Real>(
-    a: &Placed<'_, R>,
-    b: &Placed<'_, R>,
-    store: &[R],
-    mut s: R,
-    mut t: R,
-    coarse: R,
-) -> (R, R, R, R) {
+fn refine<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R], mut s: R, mut t: R, coarse: R) -> (R, R, R, R) {
     let origin = a.pose.origin;
     let limit = R::TWO * a.nodes.step.max(b.nodes.step);
     // The closest pair seen, in case Newton's method does not settle.
@@ -208,7 +201,8 @@ fn refine<R: Real>(
             let ([x, ..], [y, _, _, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
             let depth = dot(x - y, normal);
             // An overlap may be deeper than the closest nodes are apart; the outline itself must confirm it then.
-            let crossed = || encloses(&b.nodes, b.pose.unturned(x + origin - b.pose.origin)) == (b.record.sign < R::zero());
+            let crossed =
+                || encloses(&b.nodes, b.pose.unturned(x + origin - b.pose.origin)) == (b.record.sign < R::zero());
             if depth.abs() <= best.2 * (R::one() + R::lit(1e-3)) || (depth < R::zero() && crossed()) {
                 best = (s, t, depth.abs(), if depth < R::zero() { -R::one() } else { R::one() });
             }

@@ -1,6 +1,8 @@
 //! Forces are the derivatives of their energies, found here by differences of sixth order.
 
-use nekton::scene::{Body, Drive, ForceFormula, Harmonic, Link, Quadrature, Repulsion, Root, Scene, Shape, Signal, Wall};
+use nekton::scene::{
+    Body, Drive, ForceFormula, Harmonic, Link, Quadrature, Repulsion, Root, Scene, Shape, Signal, Wall,
+};
 use nekton_tests::*;
 
 /// Three links without any symmetry, as three bodies.

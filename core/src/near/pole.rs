@@ -51,7 +51,7 @@ impl<R: Real> Row<R> {
         // e^(iσNx/2)
         let decay = cexp(complex(-pre.x.im, pre.x.re) * half);
         let scale = R::PI / R::count(nodes.max(1));
-        let scale = if pre.node % 2 == 0 { scale } else { -scale };
+        let scale = if pre.node.is_multiple_of(2) { scale } else { -scale };
         Row { tangent: s / c, factor: decay * scale, half }
     }
 }
