@@ -1,0 +1,309 @@
+//! The one register tile of the factorization, C ← C − A B, and the loops around it, for any vector type.
+//!
+//! Everything here is safe and inlined into the entry points of [`super::kernel`], which choose the vector type.
+//! Matrices are column-major with leading dimension `ld`.
+
+use crate::scalar::Real;
+use crate::workspace::{at, part, part_mut, put};
+
+/// Columns of a tile.
+const COLUMNS: usize = 4;
+
+/// A vector of a few rows of one column.
+pub trait Lanes<R>: Copy {
+    /// Rows.
+    const WIDTH: usize;
+    /// The same value in every row.
+    fn splat(x: R) -> Self;
+    /// The first rows of a slice, if it has them all.
+    fn load(from: &[R]) -> Option<Self>;
+    /// The first rows of a slice; 0 where it ends early.
+    fn begin(from: &[R]) -> Self;
+    /// Writes as many rows as the slice has.
+    fn store(self, to: &mut [R]);
+    /// `self − a b`.
+    fn minus_product(self, a: Self, b: Self) -> Self;
+    /// The larger of `self` and |x|, row by row; `self` where x is NaN.
+    fn max_abs(self, x: Self) -> Self;
+    /// The largest row.
+    fn largest(self) -> R;
+}
+
+/// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
+#[derive(Clone, Copy)]
+pub(super) struct Rows {
+    /// First row of C.
+    pub to: usize,
+    /// Rows of C.
+    pub count: usize,
+    /// First row of B.
+    pub from: usize,
+}
+
+/// C ← C − A B, where B and C are rows of the same columns `right` and do not overlap. `left` holds A's columns.
+#[inline(always)]
+pub(super) fn subtract<R: Real, V: Lanes<R>, const M: usize>(left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
+    let mut done = 0;
+    while done < rows.count {
+        let rest = rows.count - done;
+        let here = Rows { to: rows.to + done, count: rest.min(M * V::WIDTH), ..rows };
+        let a = left.get(here.to..).unwrap_or(&[]);
+        match rest.div_ceil(V::WIDTH) {
+            1 => row_of_tiles::<R, V, 1>(a, ld, here, right),
+            2 if M > 2 => row_of_tiles::<R, V, 2>(a, ld, here, right),
+            _ => row_of_tiles::<R, V, M>(a, ld, here, right),
+        }
+        done += here.count;
+    }
+}
+
+/// The tiles side by side: what they read of A stays in the first cache.
+#[inline(always)]
+fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: Rows, right: &mut [R]) {
+    let depth = a.len().div_ceil(ld.max(1));
+    if depth == 0 {
+        return;
+    }
+    let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
+    for group in groups.by_ref() {
+        let (mut b, mut c): ([&[R]; COLUMNS], [&mut [R]; COLUMNS]) =
+            ([&[]; COLUMNS], [&mut [], &mut [], &mut [], &mut []]);
+        for ((b, c), column) in b.iter_mut().zip(&mut c).zip(group.chunks_exact_mut(ld.max(1))) {
+            (*b, *c) = rows.of(column, depth);
+        }
+        tile::<R, V, M>(a, ld, b, c);
+    }
+    for column in groups.into_remainder().chunks_mut(ld.max(1)) {
+        let (b, c) = rows.of(column, depth);
+        tile_of_one::<R, V, M>(a, ld, b, c);
+    }
+}
+
+impl Rows {
+    /// B's and C's part of a column.
+    #[inline(always)]
+    fn of<R>(self, column: &mut [R], depth: usize) -> (&[R], &mut [R]) {
+        let Some((upper, lower)) = column.split_at_mut_checked(self.to.max(self.from)) else { return (&[], &mut []) };
+        if self.to < self.from {
+            (part(lower, 0, depth), part_mut(upper, self.to, self.count))
+        } else {
+            (part(upper, self.from, depth), part_mut(lower, 0, self.count))
+        }
+    }
+}
+
+/// One tile of `M` vectors of rows by four columns: its columns minus A B. `a` begins at the tile's first row; a tile has no
+/// more rows than A's columns have, but those of the last column may be missing.
+#[inline(always)]
+fn tile<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: [&[R]; COLUMNS], c: [&mut [R]; COLUMNS]) {
+    let [c0, c1, c2, c3] = c;
+    let mut sums = [begin(c0), begin(c1), begin(c2), begin(c3)];
+    let [Some((x0, b0)), Some((x1, b1)), Some((x2, b2)), Some((x3, b3))] = b.map(<[R]>::split_last) else { return };
+    let (whole, last) = a.split_at_checked(b0.len() * ld).unwrap_or((&[], &[]));
+    for ((((a, b0), b1), b2), b3) in whole.chunks_exact(ld.max(1)).zip(b0).zip(b1).zip(b2).zip(b3) {
+        let Some(rows) = load::<R, V, M>(a) else { return };
+        rank_one(&mut sums, rows, [*b0, *b1, *b2, *b3]);
+    }
+    rank_one(&mut sums, begin::<R, V, M>(last), [*x0, *x1, *x2, *x3]);
+    for (sums, c) in sums.iter().zip([c0, c1, c2, c3]) {
+        store(sums, c);
+    }
+}
+
+/// The same for one column.
+#[inline(always)]
+fn tile_of_one<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: &[R], c: &mut [R]) {
+    let mut sums = [begin(c)];
+    let Some((x, b)) = b.split_last() else { return };
+    let (whole, last) = a.split_at_checked(b.len() * ld).unwrap_or((&[], &[]));
+    for (a, b) in whole.chunks_exact(ld.max(1)).zip(b) {
+        let Some(rows) = load::<R, V, M>(a) else { return };
+        rank_one(&mut sums, rows, [*b]);
+    }
+    rank_one(&mut sums, begin::<R, V, M>(last), [*x]);
+    let [sums] = sums;
+    store(&sums, c);
+}
+
+#[inline(always)]
+fn rank_one<R: Real, V: Lanes<R>, const M: usize, const N: usize>(sums: &mut [[V; M]; N], rows: [V; M], b: [R; N]) {
+    for (sums, b) in sums.iter_mut().zip(b) {
+        let b = V::splat(b);
+        for (sum, row) in sums.iter_mut().zip(rows) {
+            *sum = sum.minus_product(row, b);
+        }
+    }
+}
+
+#[inline(always)]
+fn load<R: Real, V: Lanes<R>, const M: usize>(from: &[R]) -> Option<[V; M]> {
+    let mut rows = [V::splat(R::zero()); M];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = V::load(from.get(i * V::WIDTH..)?)?;
+    }
+    Some(rows)
+}
+
+#[inline(always)]
+fn begin<R: Real, V: Lanes<R>, const M: usize>(from: &[R]) -> [V; M] {
+    let mut rows = [V::splat(R::zero()); M];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = V::begin(from.get(i * V::WIDTH..).unwrap_or(&[]));
+    }
+    rows
+}
+
+#[inline(always)]
+fn store<R: Real, V: Lanes<R>, const M: usize>(rows: &[V; M], to: &mut [R]) {
+    for (i, row) in rows.iter().enumerate() {
+        row.store(to.get_mut(i * V::WIDTH..).unwrap_or(&mut []));
+    }
+}
+
+/// Side of a triangle that is solved at once, and columns that are eliminated together.
+pub(super) const BLOCK: usize = 8;
+
+/// Left-looking elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and
+/// the largest pivot; `None` when there is none.
+#[inline(always)]
+pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
+    block: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    pivots: &mut [R],
+) -> Option<(R, R)> {
+    let (mut smallest, mut largest) = (R::MAX, R::zero());
+    let width = pivots.len();
+    for (c, pivot) in pivots.iter_mut().enumerate() {
+        let (done, rest) = block.split_at_mut_checked(c * ld)?;
+        let column = part_mut(rest, 0, n);
+        let mut x = [R::zero(); BLOCK];
+        for (p, (x, l)) in x.iter_mut().zip(done.chunks_exact(ld.max(1))).enumerate() {
+            *x = at(column, k + p);
+            let below = part_mut(column, k + p + 1, c - p - 1);
+            for (y, l) in below.iter_mut().zip(part(l, k + p + 1, c - p - 1)) {
+                *y -= *x * *l;
+            }
+        }
+        let size = reduce_column::<R, V>(done.get(k + c..).unwrap_or(&[]), ld, &x, part_mut(column, k + c, n - k - c));
+        if size == R::zero() || !size.is_finite() {
+            return None;
+        }
+        (smallest, largest) = (smallest.min(size), largest.max(size));
+        let below = part(column, k + c, n - k - c);
+        let row = k + c + below.iter().position(|y| y.abs() == size).unwrap_or(0);
+        *pivot = R::count(row);
+        if row != k + c {
+            for column in block.chunks_exact_mut(ld.max(1)).take(width) {
+                exchange(column, k + c, row);
+            }
+        }
+        let column = part_mut(block, c * ld, n);
+        let inverse = R::one() / at(column, k + c);
+        for y in part_mut(column, k + c + 1, n - k - c - 1) {
+            *y *= inverse;
+        }
+    }
+    Some((smallest, largest))
+}
+
+/// `y −= Σ_p x_p a_p`; returns the largest magnitude that comes out.
+#[inline(always)]
+fn reduce_column<R: Real, V: Lanes<R>>(a: &[R], ld: usize, x: &[R; BLOCK], y: &mut [R]) -> R {
+    let mut largest = V::splat(R::zero());
+    let mut whole = y.chunks_exact_mut(V::WIDTH);
+    let mut done = 0;
+    for y in whole.by_ref() {
+        let Some(mut sum) = V::load(y) else { break };
+        for (a, x) in a.get(done..).unwrap_or(&[]).chunks(ld.max(1)).zip(x) {
+            let Some(a) = V::load(a) else { break };
+            sum = sum.minus_product(a, V::splat(*x));
+        }
+        sum.store(y);
+        largest = largest.max_abs(sum);
+        done += V::WIDTH;
+    }
+    let mut size = largest.largest();
+    for (i, y) in whole.into_remainder().iter_mut().enumerate() {
+        for (a, x) in a.get(done + i..).unwrap_or(&[]).iter().step_by(ld.max(1)).zip(x) {
+            *y -= *a * *x;
+        }
+        if y.abs() > size {
+            size = y.abs();
+        }
+    }
+    size
+}
+
+#[inline(always)]
+pub(super) fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
+    let (x, y) = (at(column, i), at(column, j));
+    put(column, i, y);
+    put(column, j, x);
+}
+
+/// A block on the diagonal of the factors, zero where the triangle has nothing.
+#[inline(always)]
+fn triangle<R: Real>(left: &[R], ld: usize, k: usize, keep: impl Fn(usize, usize) -> bool) -> [[R; BLOCK]; BLOCK] {
+    let mut block = [[R::zero(); BLOCK]; BLOCK];
+    for (p, (to, from)) in block.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
+        for (i, (to, from)) in to.iter_mut().zip(from.get(k..).unwrap_or(&[])).enumerate() {
+            if keep(i, p) {
+                *to = *from;
+            }
+        }
+    }
+    block
+}
+
+/// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]).
+#[inline(always)]
+pub(super) fn solve_lower<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().div_ceil(ld.max(1));
+    let l = triangle(left, ld, k, |i, p| i > p && i < width);
+    for column in right.chunks_mut(ld.max(1)) {
+        let rows = part_mut(column, k, width);
+        let mut y = [R::zero(); BLOCK];
+        for (y, x) in y.iter_mut().zip(rows.iter()) {
+            *y = *x;
+        }
+        for (p, l) in l.iter().enumerate() {
+            let x = at(&y, p);
+            for (y, l) in y.iter_mut().zip(l) {
+                *y -= x * *l;
+            }
+        }
+        for (x, y) in rows.iter_mut().zip(y) {
+            *x = y;
+        }
+    }
+}
+
+/// Solves with the upper triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]).
+#[inline(always)]
+pub(super) fn solve_upper<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().div_ceil(ld.max(1));
+    let u = triangle(left, ld, k, |i, p| i < p);
+    let mut inverse = [R::one(); BLOCK];
+    for (p, (inverse, u)) in inverse.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
+        *inverse = R::one() / at(u, k + p);
+    }
+    for column in right.chunks_mut(ld.max(1)) {
+        let rows = part_mut(column, k, width);
+        let mut y = [R::zero(); BLOCK];
+        for (y, x) in y.iter_mut().zip(rows.iter()) {
+            *y = *x;
+        }
+        for (p, (u, inverse)) in u.iter().zip(inverse).enumerate().rev() {
+            let x = at(&y, p) * inverse;
+            put(&mut y, p, x);
+            for (y, u) in y.iter_mut().zip(u) {
+                *y -= x * *u;
+            }
+        }
+        for (x, y) in rows.iter_mut().zip(y) {
+            *x = y;
+        }
+    }
+}
