@@ -101,15 +101,22 @@ fn reduce<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, n: usize, k: 
     }
     for (i, left) in left.chunks((DEPTH * ld).max(1)).enumerate() {
         let k = k + i * DEPTH;
-        let mut done = 0;
-        for block in left.chunks((BLOCK * ld).max(1)) {
-            let rows = Rows { to: k + done, count: BLOCK.min(n - k - done), from: k };
-            kernel.subtract(part(left, 0, done * ld), ld, rows, right);
-            kernel.solve_lower(block, ld, k + done, right);
-            done += block.len().checked_div(ld).unwrap_or(0);
-        }
-        kernel.subtract(left, ld, Rows { to: k + done, count: n - k - done, from: k }, right);
+        let width = left.len().checked_div(ld).unwrap_or(0);
+        solve_triangle(kernel, left, ld, k, width, right);
+        kernel.subtract(left, ld, Rows { to: k + width, count: n - k - width, from: k }, right);
     }
+}
+
+/// Solves with the unit triangle in the rows `k ..` of `width` columns.
+fn solve_triangle<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, width: usize, right: &mut [R]) {
+    if width <= BLOCK {
+        return kernel.solve_lower(left, ld, k, right);
+    }
+    let half = width.div_ceil(2 * BLOCK) * BLOCK;
+    let (first, second) = left.split_at_checked(half * ld).unwrap_or((&[], &[]));
+    solve_triangle(kernel, first, ld, k, half, right);
+    kernel.subtract(first, ld, Rows { to: k + half, count: width - half, from: k }, right);
+    solve_triangle(kernel, second, ld, k + half, width - half, right);
 }
 
 /// Solves with the upper triangle.

@@ -66,17 +66,21 @@ fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: 
     }
     let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
     for group in groups.by_ref() {
-        let (mut b, mut c): ([&[R]; COLUMNS], [&mut [R]; COLUMNS]) =
-            ([&[]; COLUMNS], [&mut [], &mut [], &mut [], &mut []]);
-        for ((b, c), column) in b.iter_mut().zip(&mut c).zip(group.chunks_exact_mut(ld.max(1))) {
-            (*b, *c) = rows.of(column, depth);
-        }
-        tile::<R, V, M>(a, ld, b, c);
+        let (first, second) = halves(group);
+        let ((w, x), (y, z)) = (halves(first), halves(second));
+        let ((b0, c0), (b1, c1)) = (rows.of(w, depth), rows.of(x, depth));
+        let ((b2, c2), (b3, c3)) = (rows.of(y, depth), rows.of(z, depth));
+        tile::<R, V, M>(a, ld, [b0, b1, b2, b3], [c0, c1, c2, c3]);
     }
     for column in groups.into_remainder().chunks_mut(ld.max(1)) {
         let (b, c) = rows.of(column, depth);
         tile_of_one::<R, V, M>(a, ld, b, c);
     }
+}
+
+#[inline(always)]
+fn halves<R>(columns: &mut [R]) -> (&mut [R], &mut [R]) {
+    columns.split_at_mut_checked(columns.len() / 2).unwrap_or((&mut [], &mut []))
 }
 
 impl Rows {
@@ -92,21 +96,29 @@ impl Rows {
     }
 }
 
-/// One tile of `M` vectors of rows by four columns: its columns minus A B. `a` begins at the tile's first row; a tile has no
-/// more rows than A's columns have, but those of the last column may be missing.
+/// One tile of `M` vectors of rows by four columns: its columns minus A B. `a` begins at the tile's first row.
 #[inline(always)]
 fn tile<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: [&[R]; COLUMNS], c: [&mut [R]; COLUMNS]) {
     let [c0, c1, c2, c3] = c;
     let mut sums = [begin(c0), begin(c1), begin(c2), begin(c3)];
-    let [Some((x0, b0)), Some((x1, b1)), Some((x2, b2)), Some((x3, b3))] = b.map(<[R]>::split_last) else { return };
-    let (whole, last) = a.split_at_checked(b0.len() * ld).unwrap_or((&[], &[]));
-    for ((((a, b0), b1), b2), b3) in whole.chunks_exact(ld.max(1)).zip(b0).zip(b1).zip(b2).zip(b3) {
-        let Some(rows) = load::<R, V, M>(a) else { return };
+    let [b0, b1, b2, b3] = b;
+    let mut rest = a;
+    for (((b0, b1), b2), b3) in b0.iter().zip(b1).zip(b2).zip(b3) {
+        let Some(rows) = load::<R, V, M>(rest) else { break };
+        rest = rest.get(ld..).unwrap_or(&[]);
         rank_one(&mut sums, rows, [*b0, *b1, *b2, *b3]);
     }
-    rank_one(&mut sums, begin::<R, V, M>(last), [*x0, *x1, *x2, *x3]);
-    for (sums, c) in sums.iter().zip([c0, c1, c2, c3]) {
-        store(sums, c);
+    // One by one: what stands in an array that a loop runs over would not stay in registers.
+    let [s0, s1, s2, s3] = sums;
+    store(s0, c0);
+    store(s1, c1);
+    store(s2, c2);
+    store(s3, c3);
+    if !rest.is_empty() {
+        last_column(rest, b0, c0);
+        last_column(rest, b1, c1);
+        last_column(rest, b2, c2);
+        last_column(rest, b3, c3);
     }
 }
 
@@ -114,15 +126,26 @@ fn tile<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: [&[R]; COLU
 #[inline(always)]
 fn tile_of_one<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: &[R], c: &mut [R]) {
     let mut sums = [begin(c)];
-    let Some((x, b)) = b.split_last() else { return };
-    let (whole, last) = a.split_at_checked(b.len() * ld).unwrap_or((&[], &[]));
-    for (a, b) in whole.chunks_exact(ld.max(1)).zip(b) {
-        let Some(rows) = load::<R, V, M>(a) else { return };
+    let mut rest = a;
+    for b in b {
+        let Some(rows) = load::<R, V, M>(rest) else { break };
+        rest = rest.get(ld..).unwrap_or(&[]);
         rank_one(&mut sums, rows, [*b]);
     }
-    rank_one(&mut sums, begin::<R, V, M>(last), [*x]);
     let [sums] = sums;
-    store(&sums, c);
+    store(sums, c);
+    if !rest.is_empty() {
+        last_column(rest, b, c);
+    }
+}
+
+/// The last column of A where memory ends before a whole vector.
+#[cold]
+#[inline(never)]
+fn last_column<R: Real>(a: &[R], b: &[R], c: &mut [R]) {
+    for (c, a) in c.iter_mut().zip(a) {
+        *c -= *a * b.last().copied().unwrap_or(R::NAN);
+    }
 }
 
 #[inline(always)]
@@ -154,8 +177,8 @@ fn begin<R: Real, V: Lanes<R>, const M: usize>(from: &[R]) -> [V; M] {
 }
 
 #[inline(always)]
-fn store<R: Real, V: Lanes<R>, const M: usize>(rows: &[V; M], to: &mut [R]) {
-    for (i, row) in rows.iter().enumerate() {
+fn store<R: Real, V: Lanes<R>, const M: usize>(rows: [V; M], to: &mut [R]) {
+    for (i, row) in rows.into_iter().enumerate() {
         row.store(to.get_mut(i * V::WIDTH..).unwrap_or(&mut []));
     }
 }
