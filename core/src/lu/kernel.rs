@@ -57,7 +57,7 @@ impl<R: Real> Kernel<R> for Portable {
         tile::eliminate_block::<R, [R; PORTABLE]>(block, ld, n, k, pivots)
     }
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        tile::solve_lower(left, ld, k, right);
+        tile::solve_lower::<R, [R; PORTABLE]>(left, ld, k, right);
     }
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
         tile::solve_upper(left, ld, k, right);
@@ -104,6 +104,10 @@ impl<R: Real, const W: usize> Lanes<R> for [R; W] {
             }
         }
         self
+    }
+    #[inline(always)]
+    fn row(self, i: usize) -> R {
+        crate::workspace::at(&self, i)
     }
     #[inline(always)]
     fn largest(self) -> R {
@@ -208,7 +212,7 @@ mod x86 {
                 fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-                        tile::solve_lower(left, ld, k, right);
+                        tile::solve_lower::<R, R::$vector>(left, ld, k, right);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(left, ld, k, right) }
@@ -285,6 +289,11 @@ mod x86 {
                 fn max_abs(self, x: Self) -> Self {
                     // The instruction gives its second operand when one is NaN.
                     unsafe { $name($max(($abs)(x.0), self.0)) }
+                }
+                #[inline(always)]
+                fn row(self, i: usize) -> $t {
+                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
+                    crate::workspace::at(&lanes, i)
                 }
                 #[inline(always)]
                 fn largest(self) -> $t {

@@ -25,6 +25,8 @@ pub trait Lanes<R>: Copy {
     fn minus_product(self, a: Self, b: Self) -> Self;
     /// The larger of `self` and |x|, row by row; `self` where x is NaN.
     fn max_abs(self, x: Self) -> Self;
+    /// One row.
+    fn row(self, i: usize) -> R;
     /// The largest row.
     fn largest(self) -> R;
 }
@@ -201,21 +203,22 @@ pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
     for (c, pivot) in pivots.iter_mut().enumerate() {
         let (done, rest) = block.split_at_mut_checked(c * ld)?;
         let column = part_mut(rest, 0, n);
-        let mut x = [R::zero(); BLOCK];
-        for (p, (x, l)) in x.iter_mut().zip(done.chunks_exact(ld.max(1))).enumerate() {
-            *x = at(column, k + p);
-            let below = part_mut(column, k + p + 1, c - p - 1);
-            for (y, l) in below.iter_mut().zip(part(l, k + p + 1, c - p - 1)) {
-                *y -= *x * *l;
-            }
-        }
-        let size = reduce_column::<R, V>(done.get(k + c..).unwrap_or(&[]), ld, &x, part_mut(column, k + c, n - k - c));
+        let column = part_mut(column, k, n - k);
+        let size = match c {
+            0 => reduce_column::<R, V, 0>(done, ld, k, column),
+            1 => reduce_column::<R, V, 1>(done, ld, k, column),
+            2 => reduce_column::<R, V, 2>(done, ld, k, column),
+            3 => reduce_column::<R, V, 3>(done, ld, k, column),
+            4 => reduce_column::<R, V, 4>(done, ld, k, column),
+            5 => reduce_column::<R, V, 5>(done, ld, k, column),
+            6 => reduce_column::<R, V, 6>(done, ld, k, column),
+            _ => reduce_column::<R, V, 7>(done, ld, k, column),
+        };
         if size == R::zero() || !size.is_finite() {
             return None;
         }
         (smallest, largest) = (smallest.min(size), largest.max(size));
-        let below = part(column, k + c, n - k - c);
-        let row = k + c + below.iter().position(|y| y.abs() == size).unwrap_or(0);
+        let row = k + c + part(column, c, n - k - c).iter().position(|y| y.abs() == size).unwrap_or(0);
         *pivot = R::count(row);
         if row != k + c {
             for column in block.chunks_exact_mut(ld.max(1)).take(width) {
@@ -231,17 +234,37 @@ pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
     Some((smallest, largest))
 }
 
-/// `y −= Σ_p x_p a_p`; returns the largest magnitude that comes out.
+/// Solves with the `C` columns done before, rows `k ..`, and reduces the rows below; returns the largest magnitude there.
 #[inline(always)]
-fn reduce_column<R: Real, V: Lanes<R>>(a: &[R], ld: usize, x: &[R; BLOCK], y: &mut [R]) -> R {
+fn reduce_column<R: Real, V: Lanes<R>, const C: usize>(done: &[R], ld: usize, k: usize, column: &mut [R]) -> R {
+    let mut rest = done;
+    let mut l: [&[R]; C] = [&[]; C];
+    for l in &mut l {
+        let (first, others) = rest.split_at_checked(ld).unwrap_or((&[], &[]));
+        (*l, rest) = (part(first, k, column.len()), others);
+    }
+    let Some((top, below)) = column.split_first_chunk_mut::<C>() else { return R::NAN };
+    let mut x = *top;
+    let mut triangle = [[R::zero(); C]; C];
+    for (t, l) in triangle.iter_mut().zip(&mut l) {
+        let Some((head, tail)) = l.split_first_chunk::<C>() else { return R::NAN };
+        (*t, *l) = (*head, tail);
+    }
+    for (p, t) in triangle.iter().enumerate() {
+        let pivot = at(&x, p);
+        for (x, t) in x.iter_mut().zip(t).skip(p + 1) {
+            *x -= pivot * *t;
+        }
+    }
+    *top = x;
     let mut largest = V::splat(R::zero());
-    let mut whole = y.chunks_exact_mut(V::WIDTH);
     let mut done = 0;
+    let mut whole = below.chunks_exact_mut(V::WIDTH);
     for y in whole.by_ref() {
         let Some(mut sum) = V::load(y) else { break };
-        for (a, x) in a.get(done..).unwrap_or(&[]).chunks(ld.max(1)).zip(x) {
-            let Some(a) = V::load(a) else { break };
-            sum = sum.minus_product(a, V::splat(*x));
+        for (l, x) in l.iter().zip(x) {
+            let Some(l) = l.get(done..).and_then(V::load) else { return R::NAN };
+            sum = sum.minus_product(l, V::splat(x));
         }
         sum.store(y);
         largest = largest.max_abs(sum);
@@ -249,8 +272,8 @@ fn reduce_column<R: Real, V: Lanes<R>>(a: &[R], ld: usize, x: &[R; BLOCK], y: &m
     }
     let mut size = largest.largest();
     for (i, y) in whole.into_remainder().iter_mut().enumerate() {
-        for (a, x) in a.get(done + i..).unwrap_or(&[]).iter().step_by(ld.max(1)).zip(x) {
-            *y -= *a * *x;
+        for (l, x) in l.iter().zip(x) {
+            *y -= at(l, done + i) * x;
         }
         if y.abs() > size {
             size = y.abs();
@@ -282,24 +305,48 @@ fn triangle<R: Real>(left: &[R], ld: usize, k: usize, keep: impl Fn(usize, usize
 
 /// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]).
 #[inline(always)]
-pub(super) fn solve_lower<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+pub(super) fn solve_lower<R: Real, V: Lanes<R>>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    match BLOCK / V::WIDTH {
+        1 => lower::<R, V, 1>(left, ld, k, right),
+        2 => lower::<R, V, 2>(left, ld, k, right),
+        _ => lower::<R, V, 4>(left, ld, k, right),
+    }
+}
+
+/// The same, where `H` vectors make a block.
+#[inline(always)]
+fn lower<R: Real, V: Lanes<R>, const H: usize>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
     let width = left.len().div_ceil(ld.max(1));
-    let l = triangle(left, ld, k, |i, p| i > p && i < width);
-    for column in right.chunks_mut(ld.max(1)) {
-        let rows = part_mut(column, k, width);
-        let mut y = [R::zero(); BLOCK];
-        for (y, x) in y.iter_mut().zip(rows.iter()) {
-            *y = *x;
-        }
-        for (p, l) in l.iter().enumerate() {
-            let x = at(&y, p);
+    let l = triangle(left, ld, k, |i, p| i > p && i < width).map(|l| begin::<R, V, H>(&l));
+    let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
+    for group in groups.by_ref() {
+        let (first, second) = halves(group);
+        let ((a, b), (c, d)) = (halves(first), halves(second));
+        lower_columns(&l, [part_mut(a, k, width), part_mut(b, k, width), part_mut(c, k, width), part_mut(d, k, width)]);
+    }
+    for column in groups.into_remainder().chunks_mut(ld.max(1)) {
+        lower_columns(&l, [part_mut(column, k, width)]);
+    }
+}
+
+#[inline(always)]
+fn lower_columns<R: Real, V: Lanes<R>, const H: usize, const N: usize>(l: &[[V; H]; BLOCK], columns: [&mut [R]; N]) {
+    let mut y = [[V::splat(R::zero()); H]; N];
+    for (y, column) in y.iter_mut().zip(&columns) {
+        *y = begin(column);
+    }
+    let mut p = 0;
+    for l in l {
+        for y in &mut y {
+            let x = y.get(p / V::WIDTH).map_or(R::NAN, |y| y.row(p % V::WIDTH));
             for (y, l) in y.iter_mut().zip(l) {
-                *y -= x * *l;
+                *y = y.minus_product(*l, V::splat(x));
             }
         }
-        for (x, y) in rows.iter_mut().zip(y) {
-            *x = y;
-        }
+        p += 1;
+    }
+    for (y, column) in y.into_iter().zip(columns) {
+        store(y, column);
     }
 }
 
