@@ -17,9 +17,9 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]);
     /// [`tile::eliminate_block`].
     fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)>;
-    /// [`tile::solve_lower`].
+    /// [`tile::solve_triangle`].
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
-    /// [`tile::solve_upper`].
+    /// [`tile::solve_triangle`].
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
     /// Scalar product.
     fn inner(self, a: &[R], b: &[R]) -> R;
@@ -57,10 +57,10 @@ impl<R: Real> Kernel<R> for Portable {
         tile::eliminate_block::<R, [R; PORTABLE]>(block, ld, n, k, pivots)
     }
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        tile::solve_lower::<R, [R; PORTABLE]>(left, ld, k, right);
+        tile::solve_triangle::<R, [R; PORTABLE], false>(left, ld, k, right);
     }
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        tile::solve_upper(left, ld, k, right);
+        tile::solve_triangle::<R, [R; PORTABLE], true>(left, ld, k, right);
     }
     fn inner(self, a: &[R], b: &[R]) -> R {
         inner(a, b)
@@ -212,7 +212,7 @@ mod x86 {
                 fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-                        tile::solve_lower::<R, R::$vector>(left, ld, k, right);
+                        tile::solve_triangle::<R, R::$vector, false>(left, ld, k, right);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(left, ld, k, right) }
@@ -221,7 +221,7 @@ mod x86 {
                 fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-                        tile::solve_upper(left, ld, k, right);
+                        tile::solve_triangle::<R, R::$vector, true>(left, ld, k, right);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(left, ld, k, right) }

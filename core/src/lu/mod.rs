@@ -102,33 +102,35 @@ fn reduce<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, n: usize, k: 
     for (i, left) in left.chunks((DEPTH * ld).max(1)).enumerate() {
         let k = k + i * DEPTH;
         let width = left.len().checked_div(ld).unwrap_or(0);
-        solve_triangle(kernel, left, ld, k, width, right);
+        substitute(kernel, left, ld, k, right);
         kernel.subtract(left, ld, Rows { to: k + width, count: n - k - width, from: k }, right);
     }
 }
 
-/// Solves with the unit triangle in the rows `k ..` of `width` columns.
-fn solve_triangle<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, width: usize, right: &mut [R]) {
+/// Solves with the unit triangle in the rows `k ..` of the columns `left`.
+fn substitute<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().checked_div(ld).unwrap_or(0);
     if width <= BLOCK {
         return kernel.solve_lower(left, ld, k, right);
     }
     let half = width.div_ceil(2 * BLOCK) * BLOCK;
     let (first, second) = left.split_at_checked(half * ld).unwrap_or((&[], &[]));
-    solve_triangle(kernel, first, ld, k, half, right);
+    substitute(kernel, first, ld, k, right);
     kernel.subtract(first, ld, Rows { to: k + half, count: width - half, from: k }, right);
-    solve_triangle(kernel, second, ld, k + half, width - half, right);
+    substitute(kernel, second, ld, k + half, right);
 }
 
-/// Solves with the upper triangle.
-fn substitute_back<R: Real, K: Kernel<R>>(kernel: K, lu: &[R], ld: usize, n: usize, right: &mut [R]) {
-    let mut k = n.div_ceil(BLOCK) * BLOCK;
-    while k > 0 {
-        k -= BLOCK;
-        let width = BLOCK.min(n - k);
-        let from = k + width;
-        kernel.subtract(part(lu, from * ld, (n - from) * ld), ld, Rows { to: k, count: width, from }, right);
-        kernel.solve_upper(part(lu, k * ld, width * ld), ld, k, right);
+/// Solves with the upper triangle in the rows `k ..` of the columns `left`.
+fn substitute_back<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().checked_div(ld).unwrap_or(0);
+    if width <= BLOCK {
+        return kernel.solve_upper(left, ld, k, right);
     }
+    let half = width.div_ceil(2 * BLOCK) * BLOCK;
+    let (first, second) = left.split_at_checked(half * ld).unwrap_or((&[], &[]));
+    substitute_back(kernel, second, ld, k + half, right);
+    kernel.subtract(second, ld, Rows { to: k, count: half, from: k + half }, right);
+    substitute_back(kernel, first, ld, k, right);
 }
 
 /// Applies the exchanges of steps `k`, `k + 1`, … in order to every column.
@@ -154,14 +156,14 @@ impl<R: Real> Factors<'_, R> {
         let b = part_mut(b, 0, self.pivots.len());
         exchange_all(b, self.ld, 0, self.pivots);
         with_kernel!(kernel => {
-            reduce(kernel, self.matrix(), self.ld, self.pivots.len(), 0, b);
-            substitute_back(kernel, self.matrix(), self.ld, self.pivots.len(), b);
+            substitute(kernel, self.matrix(), self.ld, 0, b);
+            substitute_back(kernel, self.matrix(), self.ld, 0, b);
         });
     }
 
     /// Solves U x = b in place for each column of `b`, which has the matrix's leading dimension or is one column.
     pub fn back_substitute(&self, b: &mut [R]) {
-        with_kernel!(kernel => substitute_back(kernel, self.matrix(), self.ld, self.pivots.len(), b));
+        with_kernel!(kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
     }
 
     /// Solves Aᵀ x = b in place.

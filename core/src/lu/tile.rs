@@ -289,91 +289,89 @@ pub(super) fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
     put(column, j, x);
 }
 
-/// A block on the diagonal of the factors, zero where the triangle has nothing.
+/// Solves with the triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]): the unit lower one, or the upper one.
 #[inline(always)]
-fn triangle<R: Real>(left: &[R], ld: usize, k: usize, keep: impl Fn(usize, usize) -> bool) -> [[R; BLOCK]; BLOCK] {
-    let mut block = [[R::zero(); BLOCK]; BLOCK];
+pub(super) fn solve_triangle<R: Real, V: Lanes<R>, const UPPER: bool>(
+    left: &[R],
+    ld: usize,
+    k: usize,
+    right: &mut [R],
+) {
+    match BLOCK / V::WIDTH {
+        1 => triangle::<R, V, 1, UPPER>(left, ld, k, right),
+        2 => triangle::<R, V, 2, UPPER>(left, ld, k, right),
+        _ => triangle::<R, V, 4, UPPER>(left, ld, k, right),
+    }
+}
+
+/// The same, where `H` vectors make a block. Rows of the upper triangle are scaled so that it is a unit triangle too.
+#[inline(always)]
+fn triangle<R: Real, V: Lanes<R>, const H: usize, const UPPER: bool>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().div_ceil(ld.max(1));
+    let (mut block, mut scale) = ([[R::zero(); BLOCK]; BLOCK], [-R::one(); BLOCK]);
     for (p, (to, from)) in block.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
-        for (i, (to, from)) in to.iter_mut().zip(from.get(k..).unwrap_or(&[])).enumerate() {
-            if keep(i, p) {
-                *to = *from;
-            }
+        let from = part(from, k, width);
+        if UPPER {
+            put(&mut scale, p, -R::one() / at(from, p));
+            crate::workspace::copy(to, part(from, 0, p));
+        } else {
+            crate::workspace::copy(part_mut(to, p + 1, BLOCK - p - 1), part(from, p + 1, width - p - 1));
         }
     }
-    block
-}
-
-/// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]).
-#[inline(always)]
-pub(super) fn solve_lower<R: Real, V: Lanes<R>>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-    match BLOCK / V::WIDTH {
-        1 => lower::<R, V, 1>(left, ld, k, right),
-        2 => lower::<R, V, 2>(left, ld, k, right),
-        _ => lower::<R, V, 4>(left, ld, k, right),
+    let scale = begin::<R, V, H>(&scale);
+    let mut block = block.map(|column| begin::<R, V, H>(&column));
+    if UPPER {
+        for column in &mut block {
+            *column = scaled(*column, scale);
+        }
     }
-}
-
-/// The same, where `H` vectors make a block.
-#[inline(always)]
-fn lower<R: Real, V: Lanes<R>, const H: usize>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-    let width = left.len().div_ceil(ld.max(1));
-    let l = triangle(left, ld, k, |i, p| i > p && i < width).map(|l| begin::<R, V, H>(&l));
     let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
     for group in groups.by_ref() {
         let (first, second) = halves(group);
         let ((a, b), (c, d)) = (halves(first), halves(second));
-        lower_columns(&l, [part_mut(a, k, width), part_mut(b, k, width), part_mut(c, k, width), part_mut(d, k, width)]);
+        let columns = [part_mut(a, k, width), part_mut(b, k, width), part_mut(c, k, width), part_mut(d, k, width)];
+        substitute::<R, V, H, COLUMNS, UPPER>(&block, scale, columns);
     }
     for column in groups.into_remainder().chunks_mut(ld.max(1)) {
-        lower_columns(&l, [part_mut(column, k, width)]);
+        substitute::<R, V, H, 1, UPPER>(&block, scale, [part_mut(column, k, width)]);
     }
 }
 
+/// Row by row, with the columns of a unit triangle.
 #[inline(always)]
-fn lower_columns<R: Real, V: Lanes<R>, const H: usize, const N: usize>(l: &[[V; H]; BLOCK], columns: [&mut [R]; N]) {
+fn substitute<R: Real, V: Lanes<R>, const H: usize, const N: usize, const UPPER: bool>(
+    block: &[[V; H]; BLOCK],
+    scale: [V; H],
+    columns: [&mut [R]; N],
+) {
     let mut y = [[V::splat(R::zero()); H]; N];
     for (y, column) in y.iter_mut().zip(&columns) {
         *y = begin(column);
+        if UPPER {
+            *y = scaled(*y, scale);
+        }
     }
-    let mut p = 0;
-    for l in l {
+    for i in 0..BLOCK {
+        let p = if UPPER { BLOCK - 1 - i } else { i };
+        let Some(column) = block.get(p) else { return };
         for y in &mut y {
             let x = y.get(p / V::WIDTH).map_or(R::NAN, |y| y.row(p % V::WIDTH));
-            for (y, l) in y.iter_mut().zip(l) {
+            for (y, l) in y.iter_mut().zip(column) {
                 *y = y.minus_product(*l, V::splat(x));
             }
         }
-        p += 1;
     }
     for (y, column) in y.into_iter().zip(columns) {
         store(y, column);
     }
 }
 
-/// Solves with the upper triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]).
+/// `−scale · y`.
 #[inline(always)]
-pub(super) fn solve_upper<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-    let width = left.len().div_ceil(ld.max(1));
-    let u = triangle(left, ld, k, |i, p| i < p);
-    let mut inverse = [R::one(); BLOCK];
-    for (p, (inverse, u)) in inverse.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
-        *inverse = R::one() / at(u, k + p);
+fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V; H] {
+    let mut out = [V::splat(R::zero()); H];
+    for ((out, y), scale) in out.iter_mut().zip(y).zip(scale) {
+        *out = out.minus_product(y, scale);
     }
-    for column in right.chunks_mut(ld.max(1)) {
-        let rows = part_mut(column, k, width);
-        let mut y = [R::zero(); BLOCK];
-        for (y, x) in y.iter_mut().zip(rows.iter()) {
-            *y = *x;
-        }
-        for (p, (u, inverse)) in u.iter().zip(inverse).enumerate().rev() {
-            let x = at(&y, p) * inverse;
-            put(&mut y, p, x);
-            for (y, u) in y.iter_mut().zip(u) {
-                *y -= x * *u;
-            }
-        }
-        for (x, y) in rows.iter_mut().zip(y) {
-            *x = y;
-        }
-    }
+    out
 }
