@@ -39,6 +39,8 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 pub(crate) mod articulation;
 pub mod boundary;
@@ -56,8 +58,6 @@ pub mod integrate;
 mod layout;
 pub(crate) mod lone;
 pub mod lu;
-#[cfg(feature = "faer")]
-mod lu_faer;
 pub mod model;
 pub(crate) mod near;
 pub(crate) mod nystrom;
