@@ -83,5 +83,5 @@ pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
 pub use owned::{ModelBuf, SimBuf};
 pub use plan::Plan;
 pub use scalar::Real;
-pub use sim::{Method, Sim, SimHead, SimRequirement};
+pub use sim::{Method, STEP_LIMIT, Sim, SimHead, SimRequirement, TimeError};
 pub use status::{Error, Place, Result, Status};
