@@ -176,7 +176,10 @@ enum {
 /** Adams-Bashforth-Moulton of variable order 1 to 12 and variable step, 2 evaluations a step. */
 #define NEKTON_METHOD_ADAMS 3
 
-/** Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. */
+/**
+ * Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+ * archives for microcontrollers, unless they were built with the feature implicit.
+ */
 #define NEKTON_METHOD_GAUSS6 4
 
 /** No place, or nothing. */

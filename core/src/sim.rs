@@ -36,7 +36,8 @@ pub enum Method<R> {
         absolute: R,
     },
     /// Implicit Gauss–Legendre of order 6, fixed step, 10 to 20 evaluations per step: for long runs, since the energy
-    /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators).
+    /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
+    /// `implicit`, which `std` includes.
     Gauss6 {
         /// Step, s.
         step: R,
@@ -275,8 +276,11 @@ impl<'a, R: Real> Sim<'a, R> {
     /// Checks a method; the head of a simulation that has not begun.
     ///
     /// # Errors
-    /// `BadStep`, `BadTolerance`.
+    /// `BadStep`, `BadTolerance`; `Unsupported` for `Gauss6` without the feature `implicit`.
     pub fn head(method: Method<R>) -> Result<SimHead<R>> {
+        if cfg!(not(feature = "implicit")) && matches!(method, Method::Gauss6 { .. }) {
+            return Err(Error::new(Status::Unsupported).of("method", f64::NAN));
+        }
         let (relative, absolute) = match method {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 if !(step.is_finite() && step > R::zero()) {

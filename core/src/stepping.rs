@@ -113,7 +113,7 @@ impl<R: Real> Sim<'_, R> {
         let (y, memory) = (&mut *self.state.y, &mut *self.state.integrator);
         let stepped = match self.head.method {
             Method::Abm4 { .. } if regular => self.head.abm4.step(&mut motion, t, h, y, memory),
-            Method::Gauss6 { .. } => self.head.gauss6.step(&mut motion, t, h, y, memory),
+            Method::Gauss6 { .. } if cfg!(feature = "implicit") => self.head.gauss6.step(&mut motion, t, h, y, memory),
             _ => self.head.rk4.step(&mut motion, t, h, y, memory),
         };
         let next = if regular { self.head.base + R::count(self.head.step_count as usize + 1) * h } else { t + h };

@@ -6,7 +6,7 @@ use super::*;
 /// `step` makes a step from its time and returns the estimated error of the step made `lag` steps before.
 fn mismatch(h: f64, n: usize, lag: usize, mut step: impl FnMut(f64, &mut [f64]) -> Option<f64>) -> f64 {
     // The true local error by ten substeps of the implicit method, which is exact here to rounding.
-    let mut exact = |t: f64, y: f64| {
+    let exact = |t: f64, y: f64| {
         let (mut m, mut work, mut z) = (Gauss6::new(), vec![0.0; 20], [y]);
         for k in 0..10 {
             m.step(&mut ode(1, cosine_growth), t + 0.1 * h * f64::from(k), 0.1 * h, &mut z, &mut work).unwrap();
