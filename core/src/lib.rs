@@ -53,6 +53,7 @@ pub(crate) mod forces;
 pub mod grading;
 pub mod integrate;
 mod layout;
+pub(crate) mod ldl;
 pub(crate) mod lone;
 pub mod lu;
 #[cfg(feature = "faer")]
