@@ -3,7 +3,7 @@
 use crate::articulation::put_three;
 use crate::articulation::{jacobian_column, place_links, set_coordinates, twist_of, velocities};
 use crate::configuration::{Configuration, Poses, put_pose};
-use crate::lu::{Factors, factor};
+use crate::ldl;
 use crate::model::{Control, Formulation, Model, ModelHead, NearDims};
 use crate::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::potentials::{
@@ -265,14 +265,13 @@ impl<R: Real> Work<'_, R> {
                 put(self.reduced, j * n + k, sum);
             }
         }
-        factor(part_mut(self.reduced, 0, n * n), n, n, self.reduced_pivots)?;
-        Ok(())
+        ldl::factor(part_mut(self.reduced, 0, n * n), n, self.reduced_pivots)
     }
 
     /// Solves the reduced system in place: the right-hand side is in the last column of `reduced`.
     pub(crate) fn solve_reduced(&mut self, n: usize) {
         let Some((lu, rhs)) = self.reduced.split_at_mut_checked(n * n) else { return };
-        Factors { lu, ld: n, pivots: self.reduced_pivots }.solve(part_mut(rhs, 0, n));
+        ldl::solve(lu, n, self.reduced_pivots, part_mut(rhs, 0, n));
     }
 
     /// The density of the motion `qd` itself, its adjoint, and its momentum (symmetrized, world directions, with density).
