@@ -1,4 +1,5 @@
 //! How fast nekton is: stages, whole evaluations, and both beside OpenBLAS's factorization.
 
 pub mod lapack;
+pub mod scenes;
 pub mod timing;

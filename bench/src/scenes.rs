@@ -38,20 +38,9 @@ impl<R: Real> Evaluation<R> {
     }
 }
 
-/// A simulation of a scene that must be accepted.
-pub fn simulation<R: Real>(scene: &Scene<'_, R>, method: Method<R>) -> SimBuf<R> {
-    let model = ModelBuf::new(scene).unwrap_or_else(|error| panic!("scene refused: {error}"));
-    SimBuf::new(Arc::new(model), method).unwrap_or_else(|error| panic!("simulation refused: {error}"))
-}
-
-/// A link of density 1.2 without joint or circulation.
-pub fn link<R: Real>(shape: Shape<'_, R>, nodes: usize) -> Link<'_, R> {
-    Link { shape, mass: Mass::Density(R::lit(1.2)), nodes, circulation: R::zero(), joint: None }
-}
-
 /// An ellipse with semi-axes 1 and ½.
 pub fn ellipse<R: Real>(nodes: usize) -> Link<'static, R> {
-    link(Shape::Ellipse { a: R::one(), b: R::HALF }, nodes)
+    link(Shape::Ellipse { a: R::one(), b: R::HALF }, R::lit(1.2), nodes)
 }
 
 /// A rectangular array of bodies like `link` with the given gaps, all in motion, no two alike.
@@ -76,28 +65,14 @@ pub fn scene<'a, R: Real>(bodies: &'a [Body<'a, R>], quadrature: Quadrature) -> 
 
 /// Links in a row, hinged and beating as `beat` says.
 pub fn swimmer<R: Real>(count: usize, nodes: usize, beat: &[Harmonic<R>]) -> Vec<Link<'_, R>> {
-    let hinge = |parent| Joint {
-        parent,
-        kind: JointKind::Hinge,
-        parent_anchor: [R::lit(-1.25), R::zero()],
-        self_anchor: [R::lit(1.25), R::zero()],
-        drive: Drive::Motion(Signal::Harmonic { terms: beat, window: None }),
-    };
-    (0..count).map(|i| Link { joint: (i > 0).then(|| hinge(i - 1)), ..ellipse(nodes) }).collect()
+    let (front, back) = ([R::lit(1.25), R::zero()], [R::lit(-1.25), R::zero()]);
+    let drive = Drive::Motion(Signal::Harmonic { terms: beat, window: None });
+    (0..count)
+        .map(|i| if i == 0 { ellipse(nodes) } else { hinged(ellipse(nodes), i - 1, back, front, drive) })
+        .collect()
 }
 
-/// The two ellipses of the paper's section 9.2, which pass each other at a distance of 0.117.
-pub fn passing<'a, R: Real>(link: &'a [Link<'a, R>; 1]) -> Vec<Body<'a, R>> {
-    unimplemented!()
-}
-
-/// Obstacles around bodies: two long ellipses above and below.
+/// Two banks of a channel, 3 apart.
 pub fn banks<R: Real>(nodes: usize) -> [Wall<'static, R>; 2] {
-    [3.0, -3.0].map(|y| Wall {
-        shape: Shape::Ellipse { a: R::lit(4.0), b: R::one() },
-        position: [R::zero(), R::lit(y)],
-        angle: R::zero(),
-        nodes,
-        circulation: R::zero(),
-    })
+    [2.5, -2.5].map(|y| wall(Shape::Ellipse { a: R::lit(4.0), b: R::one() }, [R::zero(), R::lit(y)], R::zero(), nodes))
 }

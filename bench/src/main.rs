@@ -1,0 +1,28 @@
+//! `cargo xtask bench`: the ratios that nekton is held to.
+
+use nekton_bench::lapack::Lapack;
+use nekton_bench::rows::{Row, rows};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let lapack = match Lapack::load() {
+        Ok(lapack) => lapack,
+        Err(why) => {
+            eprintln!("{why}");
+            return ExitCode::FAILURE;
+        }
+    };
+    match words.as_slice() {
+        ["table"] => {
+            println!("# {}", lapack.name);
+            println!("{}", Row::HEAD);
+            for row in rows() {
+                println!("{}", row.measure(&lapack).line());
+            }
+            ExitCode::SUCCESS
+        }
+        _ => ExitCode::from(2),
+    }
+}
