@@ -19,7 +19,8 @@ fn main() -> ExitCode {
             println!("# {}", lapack.name);
             println!("{}", Row::HEAD);
             for row in rows() {
-                println!("{}", row.measure(&lapack).line());
+                let measured = row.measure(&lapack);
+                println!("{}", row.line(&measured));
             }
             ExitCode::SUCCESS
         }

@@ -1,7 +1,9 @@
 //! Scenes that are timed.
 
 use nekton::scalar::Real;
-use nekton::scene::{Body, Drive, Joint, JointKind, Link, Mass, Harmonic, Quadrature, Root, Scene, Shape, Signal, Wall};
+use nekton::scene::{
+    Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Root, Scene, Shape, Signal, Wall,
+};
 use nekton::{Method, ModelBuf, SimBuf};
 use std::sync::Arc;
 
