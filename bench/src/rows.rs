@@ -5,7 +5,7 @@ use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
 use crate::timing::in_turns;
 use nekton::Method;
 use nekton::scene::{Body, ForceFormula, Harmonic, Quadrature, Root, Scene, Signal};
-use nekton_tests::{adams, body, paper_ellipse, simulation, two_ellipses, wall};
+use nekton_tests::{adams, body, paper_ellipse, simulation, two_ellipses};
 use std::time::Instant;
 
 /// A measurement: a ratio of two times, or one time.

@@ -1,11 +1,9 @@
 //! Scenes that are timed.
 
 use nekton::scalar::Real;
-use nekton::scene::{
-    Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Root, Scene, Shape, Signal, Wall,
-};
-use nekton::{Method, ModelBuf, SimBuf};
-use std::sync::Arc;
+use nekton::scene::{Body, Drive, Harmonic, Link, Quadrature, Root, Scene, Shape, Signal, Wall};
+use nekton::{Method, SimBuf};
+use nekton_tests::{hinged, link, simulation, wall};
 
 /// A right-hand side to be evaluated again and again at one state.
 pub struct Evaluation<R: Real> {
