@@ -24,6 +24,15 @@ fn main() -> ExitCode {
             }
             ExitCode::SUCCESS
         }
+        ["repeat", nodes, columns, calls] => {
+            let number = |word: &str| word.parse::<usize>().unwrap_or(1);
+            let mut evaluation =
+                nekton_bench::rows::ellipses(number(columns), 2, 1.0, number(nodes), nekton::scene::Quadrature::Plain);
+            for _ in 0..number(calls) {
+                evaluation.run();
+            }
+            ExitCode::SUCCESS
+        }
         _ => ExitCode::from(2),
     }
 }

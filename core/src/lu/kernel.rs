@@ -24,8 +24,18 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
     /// Solves with the upper triangle there.
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
+    /// Order up to which blocks are eliminated one after the other, without recursion.
+    fn small(self) -> usize {
+        0
+    }
     /// Scalar product.
     fn inner(self, a: &[R], b: &[R]) -> R;
+}
+
+/// A computation that is worth compiling for the machine's own instructions: everything that `run` calls must be inlined.
+pub(crate) trait Task {
+    /// Computes.
+    fn run(self);
 }
 
 /// Vector types of a scalar.
@@ -43,7 +53,7 @@ pub trait Vectors: Sized {
 }
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::Level;
+pub(crate) use x86::Level;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
@@ -53,7 +63,8 @@ mod x86 {
     use core::mem::transmute;
 
     /// What the machine at hand can do.
-    pub(in super::super) enum Level {
+    #[derive(Clone, Copy)]
+    pub(crate) enum Level {
         Portable(Portable),
         Avx2(Avx2),
         Avx512(Avx512),
@@ -62,7 +73,7 @@ mod x86 {
     impl Level {
         /// Asks the machine; without `std`, the compiler's options. `--cfg nekton_portable` says that it can do nothing special.
         #[inline]
-        pub(in super::super) fn here() -> Self {
+        pub(crate) fn here() -> Self {
             #[cfg(feature = "std")]
             macro_rules! has {
                 ($f:tt) => {
@@ -101,11 +112,33 @@ mod x86 {
 
     /// A machine with AVX2 and FMA: 16 registers of 256 bits.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Avx2(());
+    pub(crate) struct Avx2(());
 
     /// A machine with AVX-512: 32 registers.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Avx512(());
+    pub(crate) struct Avx512(());
+
+    impl Level {
+        /// Runs a task compiled for the machine.
+        #[inline]
+        pub(crate) fn run<T: Task>(self, task: T) {
+            #[target_feature(enable = "avx2")]
+            fn short<T: Task>(task: T) {
+                task.run();
+            }
+            #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+            fn long<T: Task>(task: T) {
+                task.run();
+            }
+            match self {
+                Level::Portable(_) => task.run(),
+                // SAFETY: the value proves that the machine has these instructions.
+                Level::Avx2(_) => unsafe { short(task) },
+                // SAFETY: the same.
+                Level::Avx512(_) => unsafe { long(task) },
+            }
+        }
+    }
 
     macro_rules! kernel {
         ($level:ident, $features:literal, $vector:ident) => {
@@ -258,15 +291,21 @@ mod x86 {
 
 #[cfg(not(target_arch = "x86_64"))]
 /// What the machine at hand can do.
-pub(super) enum Level {
+#[derive(Clone, Copy)]
+pub(crate) enum Level {
     Portable(Portable),
 }
 
 #[cfg(not(target_arch = "x86_64"))]
 impl Level {
     #[inline]
-    pub(super) fn here() -> Self {
+    pub(crate) fn here() -> Self {
         Level::Portable(Portable)
+    }
+    /// Runs a task.
+    #[inline]
+    pub(crate) fn run<T: Task>(self, task: T) {
+        task.run();
     }
     #[cfg(test)]
     pub(super) fn all() -> [Self; 1] {

@@ -17,6 +17,7 @@ use crate::workspace::{at, part, part_mut, put};
 use kernel::{Kernel, Level};
 
 pub use kernel::Vectors;
+pub(crate) use kernel::{Level as Machine, Task};
 
 /// Columns of the factors that one pass over the right columns takes: what a row of tiles reads of them fits the first cache.
 const DEPTH: usize = 128;
@@ -97,7 +98,8 @@ fn eliminate<R: Real, K: Kernel<R>>(
     if pivots.len() <= BLOCK {
         return kernel.eliminate_block(block, ld, n, k, pivots);
     }
-    let half = pivots.len().div_ceil(2 * BLOCK) * BLOCK;
+    // A small matrix stays in the cache anyway, and long columns suit loops that have no tile.
+    let half = if pivots.len() <= kernel.small() { BLOCK } else { pivots.len().div_ceil(2 * BLOCK) * BLOCK };
     let (left, right) = block.split_at_mut_checked(half * ld)?;
     let (first, second) = pivots.split_at_mut_checked(half)?;
     let (smallest, largest) = eliminate(kernel, left, ld, n, k, first)?;

@@ -8,7 +8,7 @@ use crate::workspace::{at, inner, part, part_mut, put};
 
 /// Any machine.
 #[derive(Clone, Copy)]
-pub(super) struct Portable;
+pub(crate) struct Portable;
 
 impl<R: Real> Kernel<R> for Portable {
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
@@ -88,6 +88,10 @@ impl<R: Real> Kernel<R> for Portable {
                 }
             }
         }
+    }
+
+    fn small(self) -> usize {
+        64
     }
 
     fn inner(self, a: &[R], b: &[R]) -> R {
