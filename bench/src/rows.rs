@@ -18,6 +18,8 @@ pub struct Row {
     pub must: f64,
     /// What would be better.
     pub aim: f64,
+    /// The guard holds it to `must`. The other rows are goals that are not reached, or need more than one free processor.
+    pub guarded: bool,
     run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>,
 }
 
@@ -239,11 +241,15 @@ fn rollouts() -> Measured {
     Measured { time: times[1], by: times[0], ratio: 1.0 / ratios[0], note: "inverse of the gain".into() }
 }
 
+/// Rows that reach what they must.
+const GUARDED: [&str; 2] = ["articulated body of 6 links / the links free", "the same / plain trapezoid with (2.15)"];
+
 /// Every row that is measured by time.
 pub fn rows() -> Vec<Row> {
     let mut all = Vec::new();
     let mut row = |name, size, must, aim, run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>| {
-        all.push(Row { name, size, must, aim, run });
+        let guarded = GUARDED.contains(&name);
+        all.push(Row { name, size, must, aim, guarded, run });
     };
     let name = "evaluation of 4 bodies / dgetrf(N)";
     for (n, must, aim) in [(64, 1.1, 0.7), (128, 0.88, 0.65), (256, 0.84, 0.66), (512, 0.85, 0.7), (1024, 0.88, 0.76)] {
