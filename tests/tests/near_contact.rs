@@ -218,8 +218,9 @@ fn bounces_at_tiny_gaps_conserve_energy() {
     let discs = ([disc(1.0), disc(1.0)], [[0.0, 0.0, 0.3], [2.8, 0.0, -0.8]]);
     let oblique =
         ([Shape::Ellipse { a: 1.0, b: 0.5 }, Shape::Ellipse { a: 0.7, b: 0.4 }], [[0.0, 0.0, 0.4], [2.5, 0.3, 1.0]]);
-    for ((shapes, poses), epsilon, most) in [(discs, 1e-11, 1.1e-3), (discs, 1e-14, 1.1e-4), (oblique, 1e-11, 1.1e-3)] {
+    for ((shapes, poses), epsilon, most) in [(discs, 3e-8, 1.0e-3), (discs, 1e-10, 1.05e-4), (oblique, 1e-10, 3e-4)] {
         let (gap, drift) = bounce(shapes, poses, epsilon, 48);
+
         assert!(gap <= most && drift <= 1e-10, "gap {gap:e}: {drift:e}");
     }
 }
