@@ -7,6 +7,7 @@ use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::sync::Arc;
 
 pub mod extremes;
+pub mod long_run;
 
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]
