@@ -76,7 +76,7 @@ pub struct Motion<R> {
 /// The motions of the table.
 pub fn motions<R: Real>() -> [Motion<R>; 4] {
     [
-        Motion { name: "circling_disc", make: circling_disc, step: 0.025, free: true, steps: 1_000_000 },
+        Motion { name: "circling_disc", make: circling_disc, step: 0.0271, free: true, steps: 1_000_000 },
         Motion { name: "tumbling_ellipse", make: tumbling_ellipse, step: 0.1, free: true, steps: 1_000_000 },
         Motion { name: "sprung_links", make: sprung_links, step: 0.1, free: true, steps: 100_000 },
         Motion { name: "disc_in_tank", make: disc_in_tank, step: 0.1, free: false, steps: 100_000 },
