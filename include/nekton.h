@@ -215,9 +215,6 @@ enum {
 /** Capability: nekton_model_create, nekton_sim_create and their free work. */
 #define NEKTON_CAP_ALLOC 1
 
-/** Capability: large matrices are factorized by a tuned package. */
-#define NEKTON_CAP_FAER 2
-
 /** Alignment that is enough for every object, bytes. */
 #define NEKTON_ALIGN 8
 

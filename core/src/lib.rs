@@ -39,12 +39,15 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 pub(crate) mod articulation;
 pub mod boundary;
 mod build;
 pub(crate) mod christoffel;
 pub mod compile;
+pub(crate) mod configuration;
 pub(crate) mod contact;
 pub mod curve;
 pub mod diagnostics;
@@ -56,9 +59,8 @@ mod layout;
 pub(crate) mod ldl;
 pub(crate) mod lone;
 pub mod lu;
-#[cfg(feature = "faer")]
-mod lu_faer;
 pub mod model;
+pub(crate) mod near;
 pub(crate) mod nystrom;
 #[cfg(all(test, feature = "alloc"))]
 mod nystrom_test;

@@ -1,9 +1,9 @@
 //! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
 //! state as they were.
 
+use crate::configuration::Poses;
 use crate::contact::{set_anchor, swept_contact};
 use crate::model::{Formulation, Model};
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::sim::{Method, Motion, Sim, motion, split_state};
 use crate::status::{Error, Result, Status};
