@@ -14,7 +14,9 @@ fn main() -> std::io::Result<()> {
     let folder = std::path::PathBuf::from(arguments.next().unwrap_or_else(|| ".".into()));
     let only = arguments.next();
     let ratios = powers(-6, 6).into_iter().chain([f64::INFINITY]).collect();
-    let tables: [Table; 8] = [
+    let tables: [Table; 10] = [
+        ("gap", "gap_in_sizes", (1..=7).map(|k| 10f64.powi(-k)).collect(), gap),
+        ("aspect", "aspect_ratio", vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0], aspect),
         ("density", "density_ratio", ratios, density),
         ("length_same_durations", "length_m", powers(-6, 6), |l| scale(l, 1.0)),
         ("length_same_speeds", "length_m", powers(-6, 6), |l| scale(l, l)),

@@ -298,6 +298,27 @@ pub fn tank(gap: f64) -> Case {
     Case { bodies: vec![disc], tank: Some([1.0 + gap, 1.0 + gap]), ..two(1.0, 1.0) }
 }
 
+/// Two ellipses flank to flank, `gap` apart, that slide past each other and approach a little.
+pub fn gap(gap: f64) -> Case {
+    let mut case = two(1.0, 1.25);
+    for (b, side) in case.bodies.iter_mut().zip([-1.0, 1.0]) {
+        b.pose = [0.0, side * 0.5 * (1.0 + gap), 0.0];
+        b.velocity = [0.05 * side, -0.05 * gap * side, 0.0];
+    }
+    Case { nodes: 96, ..case }
+}
+
+/// Two ellipses of half-axes 1 and 1/`ratio`, side by side at a distance of 0.5.
+pub fn aspect(ratio: f64) -> Case {
+    let mut case = two(1.0, 1.25);
+    for (b, side) in case.bodies.iter_mut().zip([-1.0, 1.0]) {
+        b.axes = [1.0, 1.0 / ratio];
+        b.pose = [0.2 * side, side * (0.25 + 1.0 / ratio), 0.1 * side];
+        b.velocity = [0.2 * side, -0.05 * side, 0.1];
+    }
+    Case { nodes: 96, ..case }
+}
+
 /// Two ellipses with circulations ±γ, in units of speed times size; the run ends earlier when they turn faster.
 pub fn circulation(gamma: f64) -> Case {
     let mut case = two(1.0, 1.25);

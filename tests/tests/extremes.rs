@@ -159,3 +159,27 @@ fn energy_drifts_linearly_with_explicit_methods() {
         assert!((10.0..25.0).contains(&growth), "{name}: {growth}");
     }
 }
+
+#[test]
+fn gaps_may_be_a_hundred_thousandth_of_a_body_and_smaller_ones_are_refused() {
+    for (width, single) in [(1e-1, 1e-6), (1e-5, 3e-6)] {
+        sound("gap", width, &Case { nodes: 64, ..gap(width) }, [3e-10, single], [3e-10, 1e-5]);
+    }
+    for width in [1e-7, 0.0, -0.1] {
+        assert_eq!(gap(width).run::<f64>(Method::Rk4 { step: 0.1 }).status, "Overlap", "{width}");
+    }
+}
+
+#[test]
+fn bodies_may_be_a_hundred_times_longer_than_wide() {
+    for ratio in [1.0, 100.0] {
+        sound("aspect", ratio, &Case { nodes: 64, ..aspect(ratio) }, [3e-10, 5e-5], [1e-9, 3e-4]);
+    }
+}
+
+#[test]
+fn a_tank_may_be_hardly_larger_than_the_body() {
+    for width in [1.0, 1e-2] {
+        sound("tank", width, &Case { nodes: 48, ..tank(width) }, [3e-10, 1e-5], [1e-9, 3e-5]);
+    }
+}
