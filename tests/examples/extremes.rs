@@ -44,9 +44,13 @@ fn main() -> std::io::Result<()> {
     }
     if wanted("long_run") {
         let mut text = String::new();
-        drift_table(&mut text, 1.0, &|_| true);
+        let path = folder.join("extremes_long_run.csv");
+        drift_table(&mut text, &mut |text| {
+            if let Err(error) = std::fs::write(&path, text) {
+                eprintln!("{}: {error}", path.display());
+            }
+        });
         println!("long_run\n{text}");
-        std::fs::write(folder.join("extremes_long_run.csv"), text)?;
     }
     Ok(())
 }
