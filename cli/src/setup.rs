@@ -45,9 +45,17 @@ impl Setup {
             Integrator::Rk4 { step } => Method::Rk4 { step },
             Integrator::Abm4 { step } => Method::Abm4 { step },
             Integrator::Gauss6 { step } => Method::Gauss6 { step },
-            Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance },
+            Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance * self.unit() },
         };
         SimBuf::new(self.model.clone(), method).map_err(|e| self.problem(&e))
+    }
+
+    /// What the absolute tolerance is a part of: 1, or the mean diameter of the smallest link if that is less (m). Otherwise a
+    /// body of a micrometre would be lost in a tolerance that suits one of a metre.
+    pub fn unit(&self) -> f64 {
+        let model = self.model.view();
+        let sizes = self.links.iter().filter_map(|link| Some(model.link(*link)?.perimeter / std::f64::consts::PI));
+        sizes.fold(1.0, f64::min)
     }
 
     /// An error of the core as a complaint about the scene file.

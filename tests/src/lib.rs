@@ -9,6 +9,7 @@ use std::sync::Arc;
 pub mod near;
 
 pub mod extremes;
+pub mod long_run;
 
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]

@@ -12,6 +12,7 @@ mod header;
 mod steps;
 mod test;
 
+use crate::steps::{cargo, root};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask <command>
@@ -31,6 +32,8 @@ commands:
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
+  extremes [TABLE]
+             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -49,6 +52,8 @@ fn main() -> ExitCode {
         ["c"] => c::run(),
         ["dist", "--prefix", prefix] => dist::run(prefix),
         ["header"] => header::run(),
+        ["extremes"] => extremes(&[]),
+        ["extremes", table] => extremes(&[table]),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             ExitCode::SUCCESS
@@ -58,4 +63,13 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The complete tables of the extremes.
+fn extremes(table: &[&str]) -> ExitCode {
+    let folder = root().join("docs/accuracy");
+    let mut command =
+        cargo(&["run", "--release", "--quiet", "--package", "nekton-tests", "--example", "extremes", "--"]);
+    let done = command.arg(folder).args(table).status().is_ok_and(|status| status.success());
+    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
