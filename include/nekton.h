@@ -165,6 +165,15 @@ enum {
 /** A boundary integral, as an independent cross-check; not with a prescribed joint or root. */
 #define NEKTON_FORCE_BOUNDARY 1
 
+/**
+ * Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
+ * accuracy down to tiny gaps. Costs nothing for boundaries that are far apart.
+ */
+#define NEKTON_QUADRATURE_GRADED 0
+
+/** Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed. */
+#define NEKTON_QUADRATURE_PLAIN 1
+
 /** Classical Runge-Kutta of order 4, fixed step, 4 evaluations a step. */
 #define NEKTON_METHOD_RK4 1
 
@@ -419,6 +428,8 @@ typedef struct nekton_scene_def {
     int32_t circulation;
     /** NEKTON_FORCE_... */
     int32_t force;
+    /** NEKTON_QUADRATURE_... */
+    int32_t quadrature;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
     int32_t shortcuts;
     /** The fluid is inside this outline; NULL: no tank. */
@@ -734,6 +745,8 @@ typedef struct nekton32_scene_def {
     int32_t circulation;
     /** NEKTON_FORCE_... */
     int32_t force;
+    /** NEKTON_QUADRATURE_... */
+    int32_t quadrature;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
     int32_t shortcuts;
     /** The fluid is inside this outline; NULL: no tank. */

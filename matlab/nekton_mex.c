@@ -339,8 +339,9 @@ static void read_body(const mxArray *a, mwIndex i, nekton_body_def *body)
 static void read_scene(const mxArray *a, nekton_scene_def *scene)
 {
     static const char *const names[] = {"fluid_density", "gravity",   "repulsion_epsilon", "repulsion_alpha", "circulation", "force",
-                                        "shortcuts",     "tank",      "obstacles",         "bodies"};
-    static const char *const circulations[] = {"full", "paper"}, *const forces[] = {"exact", "boundary"};
+                                        "quadrature",    "shortcuts", "tank",              "obstacles",       "bodies"};
+    static const char *const circulations[] = {"full", "paper"}, *const forces[] = {"exact", "boundary"},
+                      *const quadratures[] = {"graded", "plain"};
     known(a, names, COUNT(names), "scene");
     check(nekton_scene_def_init(scene, sizeof *scene, NEKTON_ABI_VERSION), NULL, "scene");
     optional(a, 0, "fluid_density", &scene->fluid_density);
@@ -350,6 +351,7 @@ static void read_scene(const mxArray *a, nekton_scene_def *scene)
     const mxArray *f;
     if ((f = field(a, 0, "circulation"))) scene->circulation = word(f, circulations, COUNT(circulations), "circulation");
     if ((f = field(a, 0, "force"))) scene->force = word(f, forces, COUNT(forces), "force");
+    if ((f = field(a, 0, "quadrature"))) scene->quadrature = word(f, quadratures, COUNT(quadratures), "quadrature");
     if ((f = field(a, 0, "shortcuts"))) scene->shortcuts = (int32_t)whole(f, 0, 1, "shortcuts");
     if ((f = field(a, 0, "tank"))) {
         nekton_wall_def *tank = mxCalloc(1, sizeof *tank);

@@ -8,7 +8,7 @@ function [scene, names, run] = nekton_scene(given, controlled)
 %     tank          struct: shape, position, angle, nodes
 %     obstacle      struct array or cell: the same and circulation
 %     body          struct array or cell: name, position, angle, velocity, angular_velocity, root, link
-%     run           struct: duration, output_interval, integrator, force, shortcuts
+%     run           struct: duration, output_interval, integrator, force, quadrature, shortcuts
 %
 %   A body's link (struct array or cell) has name, shape, nodes, circulation, density (or mass, inertia, centre_of_mass),
 %   parent, hinge (or slider) and motion. A shape is a struct with one of the fields ellipse = [a b],
@@ -40,8 +40,9 @@ circulation = get(given, 'circulation', struct());
 known(circulation, {'model'}, 'circulation');
 scene.circulation = get(circulation, 'model', 'full');
 run = get(given, 'run', struct());
-known(run, {'duration', 'output_interval', 'integrator', 'force', 'shortcuts'}, 'run');
+known(run, {'duration', 'output_interval', 'integrator', 'force', 'quadrature', 'shortcuts'}, 'run');
 scene.force = get(run, 'force', 'exact');
+scene.quadrature = get(run, 'quadrature', 'graded');
 scene.shortcuts = double(get(run, 'shortcuts', true));
 
 tank = get(given, 'tank', []);

@@ -34,7 +34,7 @@ fn unknown_key() {
     );
     refuses(
         &changed("output_interval", "zzz"),
-        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, shortcuts)",
+        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, shortcuts)",
     );
 }
 
@@ -163,6 +163,10 @@ fn values_out_of_range() {
     refuses(
         &changed("[1.0, 0.4]", "[1.0, 0.0]"),
         "scene.toml:10: `ellipse` needs two lengths greater than 0, but one is 0",
+    );
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\nquadrature = \"grated\""),
+        "scene.toml:33: `quadrature` cannot be `grated` (did you mean `graded`?)",
     );
     refuses(&changed("duration = 0.5", "duration = 0"), "scene.toml:32: `duration` must be greater than 0, but is 0");
     refuses(

@@ -62,6 +62,7 @@ pub(crate) unsafe fn init_scene<R: Real>(def: *mut SceneDef<R>, size: usize, ver
         repulsion_alpha: R::lit(4.0),
         circulation: NEKTON_CIRCULATION_FULL,
         force: NEKTON_FORCE_EXACT_GRADIENT,
+        quadrature: NEKTON_QUADRATURE_GRADED,
         shortcuts: 1,
         tank: core::ptr::null(),
         obstacles: core::ptr::null(),

@@ -216,6 +216,12 @@ pub const NEKTON_FORCE_EXACT_GRADIENT: i32 = 0;
 /// A boundary integral, as an independent cross-check; not with a prescribed joint or root.
 pub const NEKTON_FORCE_BOUNDARY: i32 = 1;
 
+/// Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
+/// accuracy down to tiny gaps. Costs nothing for boundaries that are far apart.
+pub const NEKTON_QUADRATURE_GRADED: i32 = 0;
+/// Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed.
+pub const NEKTON_QUADRATURE_PLAIN: i32 = 1;
+
 /// Everything that describes a scene. To be filled by nekton_scene_def_init first. Only read while a call runs.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -236,6 +242,8 @@ pub struct SceneDef<R> {
     pub circulation: i32,
     /// NEKTON_FORCE_...
     pub force: i32,
+    /// NEKTON_QUADRATURE_...
+    pub quadrature: i32,
     /// 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check.
     pub shortcuts: i32,
     /// The fluid is inside this outline; NULL: no tank.

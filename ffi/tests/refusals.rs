@@ -173,6 +173,7 @@ fn every_pointer_count_and_kind_of_a_scene_is_checked() {
     for (spoil, quantity) in [
         ((|d| d.circulation = 2) as fn(&mut SceneDef<f64>), "circulation"),
         (|d| d.force = -1, "force"),
+        (|d| d.quadrature = 2, "quadrature"),
         (|d| d.shortcuts = 2, "shortcuts"),
     ] {
         with_scene(|def, _, _| {

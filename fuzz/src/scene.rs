@@ -197,6 +197,7 @@ impl<R: Number> Definition<R> {
             repulsion_alpha: R::of(bytes.real(4.0)),
             circulation: bytes.kind(2),
             force: if bytes.below(4) == 0 { bytes.kind(2) } else { NEKTON_FORCE_EXACT_GRADIENT },
+            quadrature: bytes.kind(2),
             shortcuts: bytes.kind(2),
             tank: if tank.is_empty() { core::ptr::null() } else { pointer(bytes, &tank) },
             obstacles: pointer(bytes, &obstacles),
