@@ -2,6 +2,7 @@
 //! number share one model. Nothing is allocated.
 
 use crate::contact::{first_misplaced, swept_contact};
+use crate::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::nystrom::Poses;
@@ -65,10 +66,26 @@ pub struct SimHead<R> {
     pub(crate) abm4: Abm4<R>,
     pub(crate) impulse: [R; 3],
     pub(crate) counters: Counters,
+    /// Largest error indicators over the steps of one call, and when the larger one was met.
+    pub(crate) worst: Resolution<R>,
+    pub(crate) worst_time: R,
+    /// What `worst` belongs to.
+    pub(crate) watch: Watch,
     /// The buffers hold an evaluation of the state shown.
     pub(crate) fresh: bool,
     /// A variable-step integrator holds the state shown or a later one.
     pub(crate) started: bool,
+}
+
+/// What the largest indicators of a simulation belong to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Watch {
+    /// No step since the state was set.
+    Nothing,
+    /// A call that is over: the next step starts anew.
+    Past,
+    /// The call that is under way.
+    Present,
 }
 
 impl<R> SimHead<R> {
@@ -244,6 +261,9 @@ impl<'a, R: Real> Sim<'a, R> {
             abm4: Abm4::new(),
             impulse: [R::zero(); 3],
             counters: Counters::default(),
+            worst: Resolution::default(),
+            worst_time: R::zero(),
+            watch: Watch::Nothing,
             fresh: false,
             started: false,
         })
@@ -366,6 +386,7 @@ impl<'a, R: Real> Sim<'a, R> {
             self.show()?;
             return Err(e);
         }
+        self.head.watch = Watch::Nothing;
         self.restart();
         Ok(())
     }
