@@ -168,6 +168,7 @@ pub(crate) fn settings<R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'_, R>> {
             NEKTON_QUADRATURE_PLAIN => Quadrature::Plain,
             kind => return unknown("quadrature", kind),
         },
+        tolerance: if s.tolerance == R::zero() { None } else { Some(s.tolerance) },
         shortcuts: flag("shortcuts", s.shortcuts)?,
         ..Scene::new(s.fluid_density, s.gravity)
     })
