@@ -33,6 +33,7 @@ pub struct SceneFile {
     pub bodies: Vec<BodyDef>,
     force: ForceFormula,
     quadrature: Quadrature,
+    tolerance: Option<f64>,
     shortcuts: bool,
     run: Option<RunDef>,
     lines: Lines,
@@ -90,7 +91,7 @@ const MOST_ROWS: f64 = 1e6;
 const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 const TOP: &[&str] = &["fluid", "repulsion", "circulation", "tank", "obstacle", "body", "run"];
-const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "quadrature", "shortcuts"];
+const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "quadrature", "tolerance", "shortcuts"];
 
 impl SceneFile {
     /// Reads and checks a scene file.
@@ -138,6 +139,7 @@ impl SceneFile {
             bodies: &bodies,
             force: self.force,
             quadrature: self.quadrature,
+            tolerance: self.tolerance,
             shortcuts: self.shortcuts,
         })
     }
@@ -336,6 +338,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
     let run = top.get("run").map(|r| r.section("[run]", RUN)).transpose()?;
     let mut force = ForceFormula::ExactGradient;
     let mut quadrature = Quadrature::Graded;
+    let mut tolerance = None;
     let mut shortcuts = true;
     if let Some(section) = &run {
         if section.or("force", "exact", |m| m.word(&["exact", "boundary"]))? == "boundary" {
@@ -344,6 +347,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         if section.or("quadrature", "graded", |m| m.word(&["graded", "plain"]))? == "plain" {
             quadrature = Quadrature::Plain;
         }
+        tolerance = section.get("tolerance").map(|t| t.positive()).transpose()?;
         shortcuts = section.or("shortcuts", true, Item::flag)?;
     }
     Ok(SceneFile {
@@ -357,6 +361,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         bodies,
         force,
         quadrature,
+        tolerance,
         shortcuts,
         run: run.as_ref().map(read_run).transpose()?,
         lines: top.lines(&["body", "obstacle", "tank"]),

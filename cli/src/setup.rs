@@ -54,6 +54,17 @@ impl Setup {
         self.scene.problem(error)
     }
 
+    /// Every boundary with its nodes.
+    pub fn nodes(&self) -> Vec<String> {
+        let view = self.model.view();
+        let labels = self.scene.labels();
+        let links = self.links.iter().zip(labels).filter_map(|(core, label)| Some((label, view.link(*core)?.place)));
+        let obstacles = (0..self.scene.obstacles.len()).map(Place::Obstacle);
+        let walls = self.scene.tank.iter().map(|_| Place::Tank).chain(obstacles);
+        let walls = walls.map(|place| (self.scene.name_of(place).trim_start_matches("the ").to_owned(), place));
+        links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
+    }
+
     /// What set-up mended.
     pub fn notices(&self) -> Vec<String> {
         let view = self.model.view();

@@ -34,7 +34,7 @@ fn unknown_key() {
     );
     refuses(
         &changed("output_interval", "zzz"),
-        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, shortcuts)",
+        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, tolerance, shortcuts)",
     );
 }
 
@@ -151,6 +151,15 @@ fn values_out_of_range() {
     refuses(
         &changed("nodes = 32", "nodes = 0"),
         "scene.toml:12: `nodes` must be even and at least 8, but is 0 (try 8)",
+    );
+    refuses(&changed("nodes = 32", "nodes = \"many\""), "scene.toml:12: `nodes` cannot be `many` (allowed: auto)");
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\ntolerance = 0"),
+        "scene.toml:33: `tolerance` must be greater than 0, but is 0",
+    );
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\ntolerance = nan"),
+        "scene.toml:33: `tolerance` must be finite, but is nan",
     );
     refuses(
         &changed("nodes = 32", "nodes = 31"),
