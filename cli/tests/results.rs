@@ -106,7 +106,7 @@ fn report_is_self_contained() {
     for word in ["http:", "https:", "src=", "href=", "@import", "url(", "{{", "}}"] {
         assert!(!stripped.contains(word), "{word}");
     }
-    assert_eq!(report.matches("<svg").count(), 4);
+    assert_eq!(report.matches("<svg").count(), 5);
     for part in ["<canvas", "fish.tail", "boundary unknowns", "evaluations", "Plan", "Settings"] {
         assert!(report.contains(part), "{part}");
     }
