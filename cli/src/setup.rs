@@ -24,7 +24,7 @@ impl Setup {
     /// Reads and compiles a scene.
     pub fn open(path: &Path) -> Result<Self, Problem> {
         let scene = SceneFile::open(path)?;
-        let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
+        let model = scene.with_core(|core| ModelBuf::resolved(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
         let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();

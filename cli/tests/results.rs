@@ -378,7 +378,7 @@ fn automatic_nodes_are_shown_by_the_plan() {
     let nodes = line("nodes");
     let counts: Vec<usize> = nodes.split(',').map(|n| n.split_whitespace().last().unwrap().parse().unwrap()).collect();
     assert_eq!(counts.len(), 3, "{nodes}");
-    assert!(nodes.contains("fish.head") && counts[0] % 2 == 0 && counts[0] > 16, "{nodes}");
+    assert!(nodes.contains("fish.head") && counts[0].is_multiple_of(2) && counts[0] > 16, "{nodes}");
     let explicit = Place::new(&changed("", "")).nekton(&["plan", "scene.toml"]).out;
     assert!(!explicit.contains("tolerance in space") && explicit.contains("fish.head 32"), "{explicit}");
 }
