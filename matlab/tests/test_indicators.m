@@ -21,16 +21,13 @@ for tolerance = {[], 0.9, 1e-10}
     run.tolerance = tolerance{1};
     sim = Nekton(scene(16, run));
     lastwarn('', '');
-    state = warning('off', 'nekton:sim:Unresolved');
-    sim.advance(0.1);
+    evalc('sim.advance(0.1)'); % a warning that is off would leave no trace
     [~, id] = lastwarn();
     assert(strcmp(id, 'nekton:sim:Unresolved') == isequal(tolerance{1}, 1e-10));
     lastwarn('', '');
-    sim.advance(0.2);
-    sim.step();
+    evalc('sim.advance(0.2); sim.step();');
     [~, id] = lastwarn();
     assert(isempty(id), 'a second warning for the same episode');
-    warning(state);
     r = sim.indicators();
     assert(r.bound > 1e-10);
     delete(sim);
