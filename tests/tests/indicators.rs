@@ -1,8 +1,8 @@
 //! Error indicators bound the error, also where symmetry hides it; a tolerance that is missed is noticed.
 
-use nekton::Resolution;
 use nekton::scene::{Quadrature, Scene, Shape};
 use nekton::status::{Place, Status};
+use nekton::{ModelBuf, Resolution, SimBuf};
 use nekton_tests::*;
 
 /// What is compared: total mass, Christoffel force, indicators of one evaluation and from all of the added mass.
@@ -83,8 +83,8 @@ fn error_of_random_pairs_is_within_the_bound() {
         let v = [[0; 3]; 2].map(|v: [i32; 3]| v.map(|_| number(-1.0, 1.0)));
         let links = shapes.map(|s| [link(s, 1.0, 64)]);
         let bodies = [body(&links[0], at[0], v[0]), body(&links[1], at[1], v[1])];
-        let Ok(model) = nekton::ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }) else { continue };
-        let Ok(mut sim) = nekton::SimBuf::new(model.into(), adams(1e-6)) else { continue };
+        let Ok(model) = ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }) else { continue };
+        let Ok(mut sim) = SimBuf::new(model.into(), adams(1e-6)) else { continue };
         let gap = sim.view().gap().distance;
         if gap < 0.1 {
             continue;
@@ -204,4 +204,81 @@ fn steps_of_every_method_tell_the_indicators_of_where_they_arrive() {
             assert_near(a / b, 1.0, 1e-4);
         }
     }
+}
+
+#[test]
+fn automatic_nodes_meet_the_tolerance() {
+    let fish = [[1.0, 0.0], [0.4, 0.25], [-0.5, 0.15], [-1.0, 0.0], [-0.5, -0.15], [0.4, -0.25]];
+    let shapes = [
+        Shape::Ellipse { a: 1.0, b: 0.6 },
+        Shape::Star { radius: 0.6, amplitude: 0.2, lobes: 3 },
+        Shape::Rectangle { width: 1.2, height: 0.8, radius: Some(0.1) },
+        Shape::Curve { points: &fish },
+    ];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        for (k, shape) in shapes.into_iter().enumerate() {
+            let looked = |nodes: usize, tolerance| {
+                let links = [link(shape, 1.0, nodes)];
+                let other = [link(shapes[0], 1.0, nodes)];
+                let bodies =
+                    [body(&links, [0.0; 3], [0.3, 0.2, 0.1]), body(&other, [0.4, 2.1, 0.3], [-0.1, -0.4, 0.2])];
+                let (tank, obstacles) =
+                    (wall(disc(5.0), [0.0; 2], 0.0, nodes), [wall(shapes[1], [3.0, 0.0], 0.2, nodes)]);
+                let (tank, obstacles): (_, &[_]) = if k % 2 == 0 { (Some(tank), &obstacles) } else { (None, &[]) };
+                let scene = Scene { bodies: &bodies, tank, obstacles, quadrature, tolerance, ..Scene::new(1.0, 0.0) };
+                let model = ModelBuf::resolved(&scene).unwrap();
+                let mut sim = SimBuf::new(model.into(), adams(1e-6)).unwrap();
+                let mut sim = sim.view();
+                let notice = sim.notice();
+                let energy = sim.energy().unwrap().kinetic_fluid;
+                let looked = Looked {
+                    force: vector(&mut sim, |s, out| s.christoffel(out)),
+                    mass: matrix(&mut sim, |s, out| s.added_mass(out)),
+                    total: matrix(&mut sim, |s, out| s.mass_matrix(out)),
+                    energy,
+                    cheap: sim.indicators().unwrap(),
+                    full: sim.resolution().unwrap(),
+                };
+                (looked, notice)
+            };
+            let (exact, _) = looked(256, None);
+            for tolerance in [1e-4, 1e-8] {
+                let (looked, notice) = looked(0, Some(tolerance));
+                let [mass, force] = errors(&looked, &exact);
+                assert!(
+                    mass.max(force) < tolerance,
+                    "{shape:?} {quadrature:?}: {mass:.1e}, {force:.1e} > {tolerance:.0e}"
+                );
+                assert_eq!(notice, None, "{shape:?} {quadrature:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn automatic_nodes_follow_from_scene_and_tolerance_alone() {
+    let count = |nodes: usize, tolerance: Option<f64>| {
+        let links = [link(Shape::Ellipse { a: 1.0, b: 0.6 }, 1.0, nodes)];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        let obstacles = [wall(Shape::Rectangle { width: 1.0, height: 0.5, radius: Some(0.01) }, [3.0, 0.0], 0.0, 0)];
+        let tank = Some(wall(disc(6.0), [0.0; 2], 0.0, 48));
+        let scene = Scene { bodies: &bodies, obstacles: &obstacles, tank, tolerance, ..Scene::new(1.0, 0.0) };
+        let model = ModelBuf::new(&scene).unwrap();
+        let model = model.view();
+        assert_eq!(model.nodes(Place::Tank), Some(48), "given counts stay");
+        assert_eq!((model.nodes(Place::Obstacle(1)), model.nodes(Place::Link(0, 1))), (None, None));
+        assert_eq!(model.nodes(Place::Link(0, 0)), Some(model.link(0).unwrap().nodes));
+        assert_eq!(model.plan().tolerance, tolerance.unwrap_or(1e-8));
+        [model.nodes(Place::Link(0, 0)).unwrap(), model.nodes(Place::Obstacle(0)).unwrap()]
+    };
+    let [coarse, default, fine] = [Some(1e-4), None, Some(1e-12)].map(|t| count(0, t));
+    assert!(coarse[0] < default[0] && default[0] < fine[0] && coarse[1] < default[1] && default[1] < fine[1]);
+    assert!(default[1] > default[0], "corners take more");
+    assert_eq!(count(0, Some(1e-8)), default);
+    assert_eq!(count(20, None)[0], 20);
+    let links = [link(Shape::Ellipse { a: 1.0_f32, b: 0.6 }, 1.0, 0)];
+    let bodies = [body(&links, [0.0; 3], [0.1; 3]), body(&links, [2.5, 1.0, 0.0], [0.0; 3])];
+    let mut single = at_start(&Scene { bodies: &bodies, ..Scene::new(1.0_f32, 0.0) });
+    assert_eq!(single.view().notice(), None);
+    assert!((1e-3..2e-3).contains(&single.view().model().plan().tolerance));
 }
