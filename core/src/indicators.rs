@@ -6,15 +6,16 @@
 //! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve.
 
 use crate::christoffel::{PairScratch, PassResult, pair_pass};
+use crate::configuration::{Configuration, Poses};
 use crate::dynamics::largest_force;
 use crate::lu::Factors;
 use crate::model::Model;
-use crate::nystrom::Poses;
+use crate::near::Near;
 use crate::potentials::{BoundarySystem, add_potential_moments, flux_moments};
 use crate::scalar::Real;
 use crate::sim::{Sim, Watch};
 use crate::status::{Error, Result, Status};
-use crate::work::{Work, scratch, system};
+use crate::work::{Work, configuration, scratch, system};
 use crate::workspace::{at, axpy, inner, part, part_mut};
 
 /// Relative error indicators of the space discretization. They do not see an error of the shape itself.
@@ -132,12 +133,13 @@ impl<R: Real> Sim<'_, R> {
         w.christoffel_force(&model);
         let scale = force_scale(&model, w.force, w.momentum, w.qd);
         let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
-        pair_pass(&model, Poses(w.poses), w.qd, w.density, w.adjoint, &mut scratch!(w), out);
+        let c = &configuration!(w, &model);
+        pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
         let system = system!(w);
         system.factors().solve(w.rate);
         system.factors().solve_transposed(w.transposed);
-        flux_moments(&model, w.rate, w.force);
-        add_potential_moments(&model, w.transposed, R::TWO, w.force);
+        flux_moments(c, w.rate, w.force);
+        add_potential_moments(c, w.transposed, R::TWO, w.force);
         let difference = largest_force(&model, w.force) * model.head.fluid_density;
         let force = if scale > zero { difference / scale } else { zero };
         // Mass: M_h against its transpose, column by column, rows and columns of rotations over the reach of their links.

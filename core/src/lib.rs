@@ -45,6 +45,7 @@ pub mod boundary;
 mod build;
 pub(crate) mod christoffel;
 pub mod compile;
+pub(crate) mod configuration;
 pub(crate) mod contact;
 pub mod curve;
 pub mod diagnostics;
@@ -59,6 +60,7 @@ pub mod lu;
 #[cfg(feature = "faer")]
 mod lu_faer;
 pub mod model;
+pub(crate) mod near;
 pub(crate) mod nystrom;
 #[cfg(all(test, feature = "alloc"))]
 mod nystrom_test;

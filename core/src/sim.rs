@@ -1,11 +1,11 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 
+use crate::configuration::Poses;
 use crate::contact::{first_misplaced, swept_contact};
 use crate::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};

@@ -1,11 +1,11 @@
 //! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
 //! state as they were.
 
+use crate::configuration::Poses;
 use crate::contact::{set_anchor, swept_contact};
 use crate::indicators::Resolution;
 use crate::integrate::Rk4;
 use crate::model::{Formulation, Model};
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::sim::{Method, Motion, Sim, Watch, motion, split_state};
 use crate::status::{Error, Result, Status};
