@@ -44,6 +44,7 @@ impl Setup {
         let method = match integrator {
             Integrator::Rk4 { step } => Method::Rk4 { step },
             Integrator::Abm4 { step } => Method::Abm4 { step },
+            Integrator::Gauss6 { step } => Method::Gauss6 { step },
             Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance },
         };
         SimBuf::new(self.model.clone(), method).map_err(|e| self.problem(&e))

@@ -163,39 +163,53 @@ pub(crate) fn signed_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &
 
 /// Newton's method on both outlines from the parameters (s, t) at distance `coarse`: parameters, distance, and −1 if the
 /// closest points show that the outlines overlap, else 1.
+///
+/// Solved is x'(s)·n(t) = 0 and (x − y)·y'(t) = 0 with n the normal of the second outline, which does not degenerate as
+/// the distance vanishes and continues to the deepest point of a slight overlap.
 fn refine<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R], mut s: R, mut t: R, coarse: R) -> (R, R, R, R) {
     let origin = a.pose.origin;
-    let mut best = coarse;
-    let mut place = (s, t);
-    let mut sign = R::one();
-    for _ in 0..12 {
+    let limit = R::TWO * a.nodes.step.max(b.nodes.step);
+    // The closest pair seen, in case Newton's method does not settle.
+    let mut best = (s, t, coarse, R::one());
+    for _ in 0..24 {
         let ([x, dx, ddx, _], [y, dy, ddy, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
         let d = x - y;
-        let distance = cabs(d);
-        if distance <= best * (R::one() + R::lit(4.0) * R::EPSILON) {
-            (best, place) = (distance, (s, t));
-            sign = if dot(d, normal) < R::zero() { -R::one() } else { R::one() };
+        let (distance, depth) = (cabs(d), dot(d, normal));
+        if distance <= best.2 * (R::one() + R::lit(4.0) * R::EPSILON) {
+            best = (s, t, distance, if depth < R::zero() { -R::one() } else { R::one() });
         }
-        // Gradient and Hessian of |d|²/2; Gauss–Newton where the Hessian is not positive.
-        let (gs, gt) = (dot(d, dx), -dot(d, dy));
-        let (mut hss, hst, mut htt) = (dot(dx, dx) + dot(d, ddx), -dot(dx, dy), dot(dy, dy) - dot(d, ddy));
-        if hss * htt - hst * hst <= R::lit(1e-6) * dot(dx, dx) * dot(dy, dy) || hss <= R::zero() {
-            (hss, htt) = (dot(dx, dx) * R::lit(1.01), dot(dy, dy) * R::lit(1.01));
-        }
-        let det = hss * htt - hst * hst;
-        let (mut ds, mut dt) = ((hst * gt - htt * gs) / det, (hst * gs - hss * gt) / det);
-        // No further than two nodes at a time.
-        let limit = R::TWO * a.nodes.step.max(b.nodes.step);
+        let (square, own) = (dot(dy, dy), dot(dx, dx));
+        // n' = −σκ|y'| τ = (n·y'')/|y'|² · (−y')
+        let bend = dot(normal, ddy) / square;
+        let (g, h) = (dot(dx, normal), dot(d, dy));
+        let (gs, gt) = (dot(ddx, normal), -bend * dot(dx, dy));
+        let (hs, ht) = (dot(dx, dy), (dot(d, ddy) - square).min(R::lit(-0.1) * square));
+        // The foot on the second outline follows; what remains is one equation for s, whose slope is positive at a minimum.
+        let slope = (gs - gt * hs / ht).max(R::lit(1e-6) * own / a.record.reach);
+        let (mut ds, mut dt) = (-(g - gt * h / ht) / slope, R::zero());
+        dt -= (h + hs * ds) / ht;
         let size = ds.abs().max(dt.abs());
+        if !size.is_finite() {
+            break;
+        }
         if size > limit {
             (ds, dt) = (ds * limit / size, dt * limit / size);
         }
-        if !size.is_finite() || size < R::EPSILON {
+        (s, t) = (s + ds, t + dt);
+        if size < R::EPSILON.sqrt() * R::lit(1e-2) {
+            // Converged: the normal distance, which a slight overlap makes negative.
+            let ([x, ..], [y, _, _, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
+            let depth = dot(x - y, normal);
+            // An overlap may be deeper than the closest nodes are apart; the outline itself must confirm it then.
+            let crossed =
+                || encloses(&b.nodes, b.pose.unturned(x + origin - b.pose.origin)) == (b.record.sign < R::zero());
+            if depth.abs() <= best.2 * (R::one() + R::lit(1e-3)) || (depth < R::zero() && crossed()) {
+                best = (s, t, depth.abs(), if depth < R::zero() { -R::one() } else { R::one() });
+            }
             break;
         }
-        (s, t) = (s + ds, t + dt);
     }
-    (place.0, place.1, best, sign)
+    best
 }
 
 /// Which pairs are looked at: at least one moves.

@@ -331,7 +331,14 @@ impl<R: Real> Sim<'_, R> {
             let (model, w) = (self.model, &mut self.work);
             let (system, mut flow, mut scratch) = (system!(w), flow!(w), scratch!(w));
             let density = model.head.fluid_density;
-            circulation::add_energy_gradient(&configuration!(w, &model), &system, &mut flow, &mut scratch, density, out);
+            circulation::add_energy_gradient(
+                &configuration!(w, &model),
+                &system,
+                &mut flow,
+                &mut scratch,
+                density,
+                out,
+            );
         }
         Ok(())
     }

@@ -39,6 +39,8 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 pub(crate) mod articulation;
 pub mod boundary;
@@ -55,10 +57,9 @@ pub mod grading;
 pub mod indicators;
 pub mod integrate;
 mod layout;
+pub(crate) mod ldl;
 pub(crate) mod lone;
 pub mod lu;
-#[cfg(feature = "faer")]
-mod lu_faer;
 pub mod model;
 pub(crate) mod near;
 pub(crate) mod nystrom;
@@ -88,5 +89,5 @@ pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
 pub use owned::{ModelBuf, SimBuf};
 pub use plan::Plan;
 pub use scalar::Real;
-pub use sim::{Method, Sim, SimHead, SimRequirement};
+pub use sim::{Method, STEP_LIMIT, Sim, SimHead, SimRequirement, TimeError};
 pub use status::{Error, Place, Result, Status};

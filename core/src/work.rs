@@ -3,7 +3,7 @@
 use crate::articulation::put_three;
 use crate::articulation::{jacobian_column, place_links, set_coordinates, twist_of, velocities};
 use crate::configuration::{Configuration, Poses, put_pose};
-use crate::lu::{Factors, factor};
+use crate::ldl;
 use crate::model::{Control, Formulation, Model, ModelHead, NearDims};
 use crate::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::potentials::{
@@ -268,21 +268,20 @@ impl<R: Real> Work<'_, R> {
                 }
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
-                let scale = (at(self.reduced, k * n + k) * at(self.reduced, j * n + j)).sqrt();
+                let scale = at(self.reduced, k * n + k).sqrt() * at(self.reduced, j * n + j).sqrt();
                 if scale > R::zero() {
                     asymmetry = asymmetry.max((halves[0] - halves[1]).abs() / scale);
                 }
             }
         }
         put(self.indicators, 0, asymmetry.max(model.head.lone_resolution[0]));
-        factor(part_mut(self.reduced, 0, n * n), n, n, self.reduced_pivots)?;
-        Ok(())
+        ldl::factor(part_mut(self.reduced, 0, n * n), n, self.reduced_pivots)
     }
 
     /// Solves the reduced system in place: the right-hand side is in the last column of `reduced`.
     pub(crate) fn solve_reduced(&mut self, n: usize) {
         let Some((lu, rhs)) = self.reduced.split_at_mut_checked(n * n) else { return };
-        Factors { lu, ld: n, pivots: self.reduced_pivots }.solve(part_mut(rhs, 0, n));
+        ldl::solve(lu, n, self.reduced_pivots, part_mut(rhs, 0, n));
     }
 
     /// The density of the motion `qd` itself, its adjoint, and its momentum (symmetrized, world directions, with density).

@@ -281,6 +281,12 @@ pub(crate) unsafe fn advance<R: Real>(handle: *mut SimHandle<R>, t_out: R, t_sto
     unsafe { steps(handle, |sim| sim.advance_dense(t_out, t_stop)) }
 }
 
+pub(crate) unsafe fn set_step_limit<R: Real>(handle: *mut SimHandle<R>, steps: u64) -> Outcome<Status> {
+    // SAFETY: checked in `sim`.
+    unsafe { sim(handle.cast_const())?.view()?.set_step_limit(steps)? };
+    Ok(Status::Ok)
+}
+
 pub(crate) unsafe fn set_channel<R: Real>(
     handle: *mut SimHandle<R>,
     channel: usize,

@@ -14,7 +14,13 @@ struct Pair {
     obstacle: Option<(Shape<'static, f64>, [f64; 2])>,
 }
 
-fn setup<T>(case: &Pair, gap: f64, nodes: usize, quadrature: Quadrature, then: impl FnOnce(&mut Sim<'_, f64>) -> T) -> T {
+fn setup<T>(
+    case: &Pair,
+    gap: f64,
+    nodes: usize,
+    quadrature: Quadrature,
+    then: impl FnOnce(&mut Sim<'_, f64>) -> T,
+) -> T {
     let links = case.shapes.map(|s| [link(s, 1.0, nodes)]);
     let velocities = [[0.3, -0.5, 0.7], [-0.2, 0.4, 0.9]];
     let poses = [case.first, (case.place)(gap)];
@@ -60,26 +66,103 @@ const fn ellipse(a: f64, b: f64) -> Shape<'static, f64> {
 fn main() {
     let none = None;
     let cases = [
-        Pair { name: "discs", shapes: [disc(1.0), disc(1.0)], place: |g| [2.0 + g, 0.0, 0.0], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "turned", shapes: [disc(1.0), disc(1.0)], place: |g| [2.0 + g, 0.0, 1.234], first: [0.0, 0.0, -2.345], tank: none, obstacle: none },
-        Pair { name: "ellipses", shapes: [ellipse(1.0, 0.5), ellipse(0.7, 0.4)], place: |g| [0.2, 0.5 + 0.4 + g, 0.1], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "wall", shapes: [ellipse(1.0, 0.5), ellipse(1.0, 0.5)], place: |g| [0.3, 1.5 - 0.5 - g, 0.0], first: [0.0; 3], tank: Some((ellipse(2.0, 1.5), [0.3, 0.0])), obstacle: none },
-        Pair { name: "flat1:10", shapes: [ellipse(1.0, 0.1), ellipse(1.0, 0.1)], place: |g| [0.1, 0.2 + g, 0.0], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "flat1:10obl", shapes: [ellipse(1.0, 0.1), ellipse(1.0, 0.1)], place: |g| [0.3, 0.27 + g, 0.15], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "flat1:100", shapes: [ellipse(1.0, 0.01), ellipse(1.0, 0.01)], place: |g| [0.1, 0.02 + g, 0.0], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "rect1%", shapes: [Shape::Rectangle { width: 2.0, height: 0.2, radius: Some(0.002) }; 2], place: |g| [0.0, 0.2 + g, 0.0], first: [0.0; 3], tank: none, obstacle: none },
-        Pair { name: "corner1%", shapes: [ellipse(0.5, 0.1); 2], place: |g| [0.1, 1.0 + 0.1 + g, 0.0], first: [0.0; 3], tank: none, obstacle: Some((Shape::Rectangle { width: 2.0, height: 2.0, radius: Some(0.02) }, [0.0, 0.0])) },
-        Pair { name: "tank+obst", shapes: [ellipse(0.4, 0.2), ellipse(0.3, 0.3)], place: |_| [0.9, 0.5, 0.4], first: [-1.2, 0.3, 0.3], tank: Some((ellipse(2.5, 2.0), [0.0, 0.0])), obstacle: Some((disc(0.3), [0.1, -0.9])) },
+        Pair {
+            name: "discs",
+            shapes: [disc(1.0), disc(1.0)],
+            place: |g| [2.0 + g, 0.0, 0.0],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "turned",
+            shapes: [disc(1.0), disc(1.0)],
+            place: |g| [2.0 + g, 0.0, 1.234],
+            first: [0.0, 0.0, -2.345],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "ellipses",
+            shapes: [ellipse(1.0, 0.5), ellipse(0.7, 0.4)],
+            place: |g| [0.2, 0.5 + 0.4 + g, 0.1],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "wall",
+            shapes: [ellipse(1.0, 0.5), ellipse(1.0, 0.5)],
+            place: |g| [0.3, 1.5 - 0.5 - g, 0.0],
+            first: [0.0; 3],
+            tank: Some((ellipse(2.0, 1.5), [0.3, 0.0])),
+            obstacle: none,
+        },
+        Pair {
+            name: "flat1:10",
+            shapes: [ellipse(1.0, 0.1), ellipse(1.0, 0.1)],
+            place: |g| [0.1, 0.2 + g, 0.0],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "flat1:10obl",
+            shapes: [ellipse(1.0, 0.1), ellipse(1.0, 0.1)],
+            place: |g| [0.3, 0.27 + g, 0.15],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "flat1:100",
+            shapes: [ellipse(1.0, 0.01), ellipse(1.0, 0.01)],
+            place: |g| [0.1, 0.02 + g, 0.0],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "rect1%",
+            shapes: [Shape::Rectangle { width: 2.0, height: 0.2, radius: Some(0.002) }; 2],
+            place: |g| [0.0, 0.2 + g, 0.0],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: none,
+        },
+        Pair {
+            name: "corner1%",
+            shapes: [ellipse(0.5, 0.1); 2],
+            place: |g| [0.1, 1.0 + 0.1 + g, 0.0],
+            first: [0.0; 3],
+            tank: none,
+            obstacle: Some((Shape::Rectangle { width: 2.0, height: 2.0, radius: Some(0.02) }, [0.0, 0.0])),
+        },
+        Pair {
+            name: "tank+obst",
+            shapes: [ellipse(0.4, 0.2), ellipse(0.3, 0.3)],
+            place: |_| [0.9, 0.5, 0.4],
+            first: [-1.2, 0.3, 0.3],
+            tank: Some((ellipse(2.5, 2.0), [0.0, 0.0])),
+            obstacle: Some((disc(0.3), [0.1, -0.9])),
+        },
     ];
     let wanted: Vec<String> = std::env::args().skip(1).collect();
     println!("case,gap,nodes,mass,force,asym_mass,asym_force");
     for case in cases.iter().filter(|c| wanted.is_empty() || wanted.iter().any(|w| c.name == w)) {
-        for gap in [1.0, 0.1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        for gap in [0.3, 0.1, 1e-2, 1e-3, 1e-4, 1e-5] {
             let at = if case.name == "tank+obst" { gap } else { parameter(case, gap) };
             let (m, f, _) = evaluate(case, at, 320, Quadrature::Graded);
             for nodes in [32, 48, 64, 96, 128, 160, 192] {
                 let (mass, force, r) = evaluate(case, at, nodes, Quadrature::Graded);
-                println!("{},{gap:e},{nodes},{:.1e},{:.1e},{:.1e},{:.1e}", case.name, error(&mass, &m), error(&force, &f), r[0], r[1]);
+                println!(
+                    "{},{gap:e},{nodes},{:.1e},{:.1e},{:.1e},{:.1e}",
+                    case.name,
+                    error(&mass, &m),
+                    error(&force, &f),
+                    r[0],
+                    r[1]
+                );
             }
         }
     }

@@ -64,7 +64,7 @@ fn site<R: Real>(p: &Placed<'_, R>, store: &[R], t: R) -> Site<R> {
 /// Appends a ladder to the list of a boundary, finest first; a full list drops its coarsest.
 fn push<R: Real>(lists: &mut [R], boundary: usize, mut ladder: Ladder<R>) {
     let list = part_mut(lists, boundary * LADDER_LIST, LADDER_LIST);
-    if !(ladder.beta < ladder.top) {
+    if ladder.beta.is_nan() || ladder.beta >= ladder.top {
         return;
     }
     let count = at(list, 0).to_f64() as usize;

@@ -29,7 +29,7 @@ pub(crate) const COLUMNS: usize = 8;
 
 /// Rungs that a boundary of `nodes` nodes can use beyond its permanent ones.
 pub(crate) fn rung_allowance(nodes: usize) -> usize {
-    (nodes / 2).max(16)
+    nodes.max(24)
 }
 
 /// The buffers of the present configuration (all empty: plain).

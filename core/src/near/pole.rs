@@ -12,7 +12,7 @@ use crate::near::Preimage;
 use crate::scalar::{Complex, Real, cexp, complex, csin_cos};
 use crate::workspace::{part, part_mut};
 
-/// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r.
+/// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
 pub(crate) fn table_len(nodes: usize) -> Option<usize> {
     nodes.checked_mul(4)
 }
@@ -21,7 +21,9 @@ pub(crate) fn table_len(nodes: usize) -> Option<usize> {
 pub(crate) fn fill_table<R: Real>(nodes: usize, table: &mut [R]) {
     let len = 2 * nodes;
     for r in 0..len {
-        let (s, c) = (R::PI * R::count(r) / R::count(nodes.max(1))).sin_cos();
+        // The cotangent has period π: reduced first, so that the sine of a whole period is exactly 0.
+        let reduced = if r < nodes { r } else { r - nodes };
+        let (s, c) = (R::PI * R::count(reduced) / R::count(nodes.max(1))).sin_cos();
         crate::workspace::put(table, r, c);
         crate::workspace::put(table, len + r, s);
     }
@@ -49,7 +51,7 @@ impl<R: Real> Row<R> {
         // e^(iσNx/2)
         let decay = cexp(complex(-pre.x.im, pre.x.re) * half);
         let scale = R::PI / R::count(nodes.max(1));
-        let scale = if pre.node % 2 == 0 { scale } else { -scale };
+        let scale = if pre.node.is_multiple_of(2) { scale } else { -scale };
         Row { tangent: s / c, factor: decay * scale, half }
     }
 }

@@ -150,11 +150,10 @@ impl<R: Real> Source<'_, R> {
             {
                 continue;
             }
-            if let Some(p) = self.preimage(j, u) {
-                if let (Some(slot), Some(root)) = (found.get_mut(count), roots.get_mut(count)) {
-                    (*slot, *root) = (Some(p), t);
-                    count += 1;
-                }
+            if let (Some(p), Some(slot), Some(root)) = (self.preimage(j, u), found.get_mut(count), roots.get_mut(count))
+            {
+                (*slot, *root) = (Some(p), t);
+                count += 1;
             }
         }
         if count > 0 { self.best_subset(z, own, found) } else { found }
@@ -184,7 +183,7 @@ impl<R: Real> Source<'_, R> {
                 return None;
             }
             if size > limit {
-                step = step * (limit / size);
+                step *= limit / size;
             }
             u += step;
             if size <= R::lit(4.0) * R::EPSILON * cabs(u) {
@@ -239,10 +238,10 @@ impl<R: Real> Source<'_, R> {
         let t_j = at(self.nodes.t, node);
         let x = self.view.grading.difference(t_j, u);
         let exponent = R::count(self.nodes.t.len()) * x.im.abs() * R::HALF;
-        if !(exponent < reach()) || x.im == R::zero() {
+        if exponent.is_nan() || exponent >= reach() || x.im == R::zero() {
             return None;
         }
-        let rate = self.view.grading.slope(u + t_j) / self.view.curve.jet(u + t_j)[1];
+        let rate = self.view.grading.slope(t_j, u) / self.view.curve.jet(u + t_j)[1];
         (rate.re.is_finite() && rate.im.is_finite()).then_some(Preimage { node, x, rate })
     }
 }
