@@ -109,7 +109,7 @@ impl<'a, R: Real> Model<'a, R> {
         if traits.formulation == Formulation::Kirchhoff
             && let Some(boundary) = memory.boundaries.first()
         {
-            (head.lone_added_mass, head.lone_impulse) =
+            (head.lone_added_mass, head.lone_impulse, head.lone_resolution) =
                 crate::lone::constants(boundary, store, scratch, traits.circulation)?;
         }
         Ok(head)
@@ -172,6 +172,7 @@ fn head<R: Real, S: Description<R>>(
         gravity: settings.gravity != R::zero(),
         repulsion: settings.repulsion.is_some_and(|r| r.epsilon != R::zero()),
         circulation: traits.circulation,
+        tolerance: crate::resolve::asked(scene).to_f64(),
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
@@ -182,6 +183,7 @@ fn head<R: Real, S: Description<R>>(
         repulsion: settings.repulsion.filter(|r| r.epsilon != R::zero()),
         gyroscopic: traits.circulation && settings.circulation == CirculationModel::Full,
         force: settings.force,
+        tolerance: crate::resolve::asked(scene),
         wall_nodes: layout.wall_nodes,
         walls_at: layout.walls_at,
         walls_regular_at: layout.walls_regular_at,
@@ -196,6 +198,7 @@ fn head<R: Real, S: Description<R>>(
         prescribed_moves,
         lone_added_mass: [R::zero(); 9],
         lone_impulse: [R::zero(); 3],
+        lone_resolution: [R::zero(); 2],
         plan,
     };
     head.plan.sim_bytes = crate::sim::SimRequirement::of(&head, coordinates.len())

@@ -5,6 +5,7 @@ use crate::forces::close_range;
 use crate::grading::grading_len;
 use crate::model::Formulation;
 use crate::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
+use crate::resolve::target;
 use crate::scalar::Real;
 use crate::scene::{Description, Drive, Link, Mass, Quadrature, Root, Shape, Signal};
 use crate::se2::Pose;
@@ -24,22 +25,27 @@ pub(crate) struct Item<'a, R> {
 }
 
 pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Item<'a, R>> + Clone {
-    let wall = |place, w: crate::scene::Wall<'a, R>| Item {
+    let settings = scene.settings();
+    let tolerance = target(settings.tolerance);
+    let nodes = move |given: usize, shape: &Shape<'a, R>| {
+        if given == 0 { crate::resolve::nodes(shape, tolerance, settings.quadrature) } else { given }
+    };
+    let wall = move |place, w: crate::scene::Wall<'a, R>| Item {
         place,
         link: None,
         shape: w.shape,
-        nodes: w.nodes,
+        nodes: nodes(w.nodes, &w.shape),
         centre: None,
         circulation: w.circulation,
         pose: Pose::new(w.position[0], w.position[1], w.angle),
     };
     let tank = scene.tank().into_iter().map(move |w| wall(Place::Tank, w));
     let obstacles = (0..scene.obstacle_count()).filter_map(move |i| Some(wall(Place::Obstacle(i), scene.obstacle(i)?)));
-    let links = each_link(scene).enumerate().map(|(i, (b, l, link))| Item {
+    let links = each_link(scene).enumerate().map(move |(i, (b, l, link))| Item {
         place: Place::Link(b, l),
         link: Some(i),
         shape: link.shape,
-        nodes: link.nodes,
+        nodes: nodes(link.nodes, &link.shape),
         centre: Some(match link.mass {
             Mass::Density(_) => [R::zero(); 2],
             Mass::Given { centre_of_mass, .. } => centre_of_mass,

@@ -116,6 +116,8 @@ pub struct ModelHead<R> {
     pub(crate) repulsion: Option<Repulsion<R>>,
     pub(crate) gyroscopic: bool,
     pub(crate) force: ForceFormula,
+    /// Relative error in space that the scene asks for; 0: none.
+    pub(crate) tolerance: R,
     /// Nodes on walls; they come first.
     pub(crate) wall_nodes: usize,
     pub(crate) walls_at: usize,
@@ -129,6 +131,8 @@ pub struct ModelHead<R> {
     /// Lone body: added mass (without mass) and flux impulse of its circulation, per unit density, body frame.
     pub(crate) lone_added_mass: [R; 9],
     pub(crate) lone_impulse: [R; 3],
+    /// Lone body: asymmetry of its discrete added mass, and error of the constant density.
+    pub(crate) lone_resolution: [R; 2],
     pub(crate) plan: Plan,
 }
 
@@ -191,6 +195,10 @@ impl<'a, R: Real> Model<'a, R> {
             centroid: [l.centroid.re, l.centroid.im],
             nodes: self.boundaries.get(self.head.plan.walls + i)?.nodes,
         })
+    }
+    /// Nodes on a boundary, automatic or given. `None` if there is no such boundary.
+    pub fn nodes(&self, place: Place) -> Option<usize> {
+        self.boundaries.iter().find(|b| b.place == place).map(|b| b.nodes)
     }
     /// Number of channels (`Signal::Channel`), in the order of the coordinates.
     pub fn channel_count(&self) -> usize {
