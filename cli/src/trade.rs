@@ -17,7 +17,7 @@ use nekton::status::Error;
 use crate::scene_file::{Problem, SceneFile};
 use crate::{Ending, say};
 use measure::Bench;
-use reference::Reference;
+use reference::{Reference, Refusal};
 pub use setting::{Setting, Variant, method, method_name, parameter};
 use study::{Measured, Status, Study, cheapest, front};
 use table::{Table, beside, mark};
@@ -55,7 +55,7 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
             Some(reference) => reference,
             None => {
                 let found = reference::reference(&bench, until, limit, |what| bar.set_message(what.to_owned()));
-                found.map_err(|e| scene.problem(&e))?
+                found.map_err(|e| refused(&scene, e))?
             }
         };
         let mut writer = table.open()?;
@@ -84,6 +84,13 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
         say(&format!("{fresh} settings measured, {before} known from before"));
         Ok(Ending::Complete)
     })
+}
+
+fn refused(scene: &SceneFile, refusal: Refusal) -> Problem {
+    match refusal {
+        Refusal::Core(error) => scene.problem(&error),
+        Refusal::TooSlow => Problem::file(scene.path(), "is too slow to be measured").hint("allow more with --limit"),
+    }
 }
 
 fn progress() -> ProgressBar {
@@ -191,7 +198,7 @@ pub fn choose(path: &Path, scene: &SceneFile, error: f64) -> Result<Choice, Prob
         }
         let clock = Instant::now();
         let limit = Duration::from_secs(1);
-        let reference = reference::reference(&bench, duration, limit, |_| ()).map_err(|e| wrong(&e))?;
+        let reference = reference::reference(&bench, duration, limit, |_| ()).map_err(|e| refused(scene, e))?;
         let study =
             Study { bench: &bench, reference: &reference, limit, quick: true, known: Vec::new(), enough: error };
         let rows = study.run(|_, _| (), |_| Ok::<(), Problem>(()))?;

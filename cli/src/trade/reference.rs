@@ -22,6 +22,24 @@ const GROWTH: f64 = 1e3;
 /// The reference may take so many times as long as a run.
 const PATIENCE: u32 = 6;
 
+/// A horizon shorter than this part of what was wanted shows nothing.
+const SHORTEST: f64 = 1e-4;
+
+/// Why there is no reference.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// The scene cannot be run.
+    Core(Error),
+    /// The limit allows no reference, not even a short one.
+    TooSlow,
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        Refusal::Core(error)
+    }
+}
+
 /// A reference trajectory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
@@ -49,7 +67,7 @@ fn setting(nodes: usize, tolerance: f64) -> Setting {
 
 /// The time until which trajectories can be compared: until the scene ends (by contact, say), or until it has magnified a
 /// change of its start a thousand times.
-pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, Error> {
+pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, Refusal> {
     let usual = setting(bench.nodes.min(FIRST), 1e-9);
     let shift = SHIFT * bench.size();
     let mut until = wanted;
@@ -57,7 +75,7 @@ pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, E
         let (a, b) = (bench.once(&usual, until, limit, 0.0), bench.once(&usual, until, limit, shift));
         let whole = a.path.len().min(b.path.len()).saturating_sub(1);
         if let (0, Ended::Failed(e)) = (whole, a.ended) {
-            return Err(e);
+            return Err(e.into());
         }
         let calm = bench.distances(&a.path, &b.path).take_while(|d| *d <= GROWTH * shift).count().saturating_sub(1);
         let good = calm.min(whole);
@@ -65,6 +83,9 @@ pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, E
             return Ok(until);
         }
         until *= good.max(1) as f64 / OUTPUTS as f64;
+        if until < SHORTEST * wanted {
+            return Err(Refusal::TooSlow);
+        }
     }
 }
 
@@ -74,17 +95,20 @@ pub fn reference(
     wanted: f64,
     limit: Duration,
     mut tell: impl FnMut(&str),
-) -> Result<Reference, Error> {
+) -> Result<Reference, Refusal> {
     tell("horizon");
     let mut until = horizon(bench, wanted, limit * PATIENCE)?;
     'shorter: loop {
+        if until < SHORTEST * wanted {
+            return Err(Refusal::TooSlow);
+        }
         let mut nodes = bench.nodes.min(FIRST);
         let mut before: Option<(Path, usize, f64)> = None;
         for round in 0..ROUNDS {
             tell(&format!("reference: {nodes} nodes to t = {until:.4}"));
             let run = bench.once(&setting(nodes, TOLERANCE * (2 - round % 2) as f64), until, limit * PATIENCE, 0.0);
             match (run.ended, &before) {
-                (Ended::Failed(e), None) => return Err(e),
+                (Ended::Failed(e), None) => return Err(e.into()),
                 (Ended::Limit, None) => {
                     until *= 0.5;
                     continue 'shorter;
