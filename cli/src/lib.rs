@@ -52,7 +52,7 @@ enum Command {
     Trade {
         /// Scene file (TOML)
         scene: PathBuf,
-        /// Folder for trade.csv, trade.svg and reference.csv [default: SCENE with the ending .trade]
+        /// Folder for trade.csv, trade.svg, recommended.csv and reference.csv [default: SCENE with the ending .trade]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Relative errors for which a setting is recommended

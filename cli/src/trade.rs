@@ -80,7 +80,11 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
         let picture = picture::draw(&title, &rows, &reference)
             .map_err(|e| Problem::file(path, format!("the plot could not be drawn: {e}")))?;
         table.write("trade.svg", picture.as_bytes())?;
-        report(&scene, duration, &reference, &rows, &wish.errors);
+        // Below its own error the reference cannot tell.
+        let chosen: Vec<(f64, Option<&Measured>)> =
+            wish.errors.iter().map(|e| (*e, cheapest(&rows, *e).filter(|_| *e >= reference.error))).collect();
+        table.write("recommended.csv", table::recommended(&reference, &chosen).as_bytes())?;
+        report(&scene, duration, &reference, &rows, &chosen);
         say(&format!("{fresh} settings measured, {before} known from before"));
         Ok(Ending::Complete)
     })
@@ -103,7 +107,13 @@ fn progress() -> ProgressBar {
 }
 
 /// Prints the front and the recommendations.
-fn report(scene: &SceneFile, duration: f64, reference: &Reference, rows: &[Measured], wanted: &[f64]) {
+fn report(
+    scene: &SceneFile,
+    duration: f64,
+    reference: &Reference,
+    rows: &[Measured],
+    chosen: &[(f64, Option<&Measured>)],
+) {
     let count = |f: &dyn Fn(&Status) -> bool| rows.iter().filter(|m| f(&m.status)).count();
     say(&format!("scene      {}", scene.path().display()));
     say(&format!("horizon    {} s of {duration} s", shown(reference.until)));
@@ -134,12 +144,12 @@ fn report(scene: &SceneFile, duration: f64, reference: &Reference, rows: &[Measu
         ));
     }
     say("");
-    for error in wanted {
-        match cheapest(rows, *error) {
-            _ if *error < reference.error => {
+    for (error, row) in chosen {
+        match row {
+            Some(m) => say(&format!("for {error:.0e}: {}, {:.1e} s/s", m.setting.text(), m.cost)),
+            None if *error < reference.error => {
                 say(&format!("for {error:.0e}: the reference itself is only good to {:.0e}", reference.error));
             }
-            Some(m) => say(&format!("for {error:.0e}: {}, {:.1e} s/s", m.setting.text(), m.cost)),
             None => say(&format!("for {error:.0e}: no setting that was tried is exact enough")),
         }
     }

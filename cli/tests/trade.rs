@@ -47,7 +47,7 @@ fn settings(place: &Place) -> Vec<Vec<String>> {
 fn trade_writes_table_picture_and_reference_and_recommends() {
     let place = Place::new(SMALL);
     let done = trade(&place, &["--limit", "2"]);
-    assert_eq!(names(&place.path("scene.trade")), ["reference.csv", "trade.csv", "trade.svg"]);
+    assert_eq!(names(&place.path("scene.trade")), ["recommended.csv", "reference.csv", "trade.csv", "trade.svg"]);
     let table = place.read("scene.trade/trade.csv");
     assert_eq!(
         table.lines().next().unwrap(),
@@ -66,6 +66,11 @@ fn trade_writes_table_picture_and_reference_and_recommends() {
     }
     for line in ["for 1e-3: nodes ", "for 1e-6: nodes ", "for 1e-9: nodes "] {
         assert!(done.out.contains(line), "{}", done.out);
+    }
+    let recommended = self::rows(&place, "scene.trade/recommended.csv");
+    for (row, wanted) in recommended.iter().zip([1e-3, 1e-6, 1e-9]) {
+        assert_eq!(row[0].parse(), Ok(wanted));
+        assert!(row[11].parse::<f64>().unwrap() <= wanted, "{row:?}");
     }
     let svg = place.read("scene.trade/trade.svg");
     for word in ["front", "adams", "rk4 f32", "boundary plain", "relative error", "s/s"] {

@@ -10,6 +10,7 @@ mod fuzz;
 mod header;
 mod steps;
 mod test;
+mod trade;
 
 use std::process::ExitCode;
 
@@ -25,6 +26,9 @@ commands:
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
+  trade [--quick | --resume]
+             docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
+             target/accuracy; --resume: goes on with a run that was cut off)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -39,6 +43,9 @@ fn main() -> ExitCode {
         ["symbols"] => archive::write_symbols(),
         ["c"] => c::run(),
         ["dist", "--prefix", prefix] => dist::run(prefix),
+        ["trade"] => trade::run(false),
+        ["trade", "--resume"] => trade::run(true),
+        ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["header"] => header::run(),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");

@@ -149,6 +149,24 @@ impl Writer {
     }
 }
 
+/// The recommendations as a table: the row of the setting for each wanted error, without a setting where none is exact enough.
+pub fn recommended(reference: &Reference, chosen: &[(f64, Option<&Measured>)]) -> String {
+    let columns = TRADE.split_once(',').map_or("", |(_, rest)| rest);
+    let mut text = format!("wanted,reference_error,{columns}\n");
+    for (wanted, row) in chosen {
+        let cells = match row {
+            Some(row) => cells(reference.until, row),
+            None => {
+                let mut empty = vec![String::new(); columns.split(',').count()];
+                empty[0] = format!("{:e}", reference.until);
+                empty
+            }
+        };
+        text += &format!("{wanted:e},{:.1e},{}\n", reference.error, cells.join(","));
+    }
+    text
+}
+
 fn number(x: f64) -> String {
     if x.is_finite() { format!("{x:.3e}") } else { String::new() }
 }

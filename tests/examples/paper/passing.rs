@@ -14,7 +14,7 @@ use std::time::Instant;
 
 const END: f64 = 10.0;
 const TIMES: usize = 10;
-const TOLERANCE: f64 = 1e-10;
+const TOLERANCE: f64 = 1e-12;
 
 /// State (q, v) at every output time.
 type States = Vec<Vec<f64>>;
@@ -24,6 +24,9 @@ struct Run {
     seconds: f64,
     evaluations: usize,
 }
+
+/// A row of the table: scheme, nodes per body, errors, time.
+type Row = (Scheme, usize, [f64; 4], f64);
 
 #[derive(Clone, Copy, PartialEq)]
 enum Scheme {
@@ -116,7 +119,7 @@ pub fn figures(folder: &Path, quick: bool) -> Outcome {
     let counts: &[usize] =
         if quick { &[16, 24, 32] } else { &[8, 12, 16, 20, 24, 28, 32, 40, 48, 64, 96, 128, 192, 256] };
     let mut table = String::from("scheme,nodes,position,angle,velocity,angular_velocity,seconds,evaluations\n");
-    let mut rows: Vec<(Scheme, usize, [f64; 4], f64)> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     for (scheme, name, _) in SCHEMES {
         for n in counts {
             let (errors, seconds, evaluations) = match run(scheme, *n, TOLERANCE) {
@@ -133,7 +136,7 @@ pub fn figures(folder: &Path, quick: bool) -> Outcome {
         }
     }
     write(folder, "passing.csv", &table)?;
-    let curves = |value: &dyn Fn(&(Scheme, usize, [f64; 4], f64)) -> f64| -> Vec<Curve> {
+    let curves = |value: &dyn Fn(&Row) -> f64| -> Vec<Curve> {
         let curve = |(k, (scheme, _, title)): (usize, &(Scheme, &str, &str))| Curve {
             name: (*title).to_owned(),
             points: rows.iter().filter(|r| r.0 == *scheme).map(|r| (r.1 as f64, value(r))).collect(),
@@ -157,7 +160,7 @@ pub fn figures(folder: &Path, quick: bool) -> Outcome {
         let from = curve.points.len().saturating_sub(if quick { 3 } else { 5 });
         let exponent = slope(&curve.points[from..]);
         println!("{}: time grows as nodes^{exponent:.2}", curve.name);
-        let short = curve.name.split(':').next().unwrap_or_default();
+        let short = curve.name.split(':').next().unwrap_or_default().trim_start_matches("constant ");
         curve.name = format!("{short}, exponent {exponent:.1}");
     }
     let title = "Figure 7: time to t = 10 s, two ellipses passing";
