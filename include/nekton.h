@@ -93,7 +93,9 @@ enum {
     /** a kind or flag has no such value */
     NEKTON_E_UNKNOWN_KIND = -29,
     /** two buffers overlap that must not */
-    NEKTON_E_ALIASING = -30
+    NEKTON_E_ALIASING = -30,
+    /** the equations of an implicit step were not solved: the step is too long */
+    NEKTON_E_NO_CONVERGENCE = -31
 };
 
 /** Not set: refused. */
@@ -174,6 +176,12 @@ enum {
 /** Adams-Bashforth-Moulton of variable order 1 to 12 and variable step, 2 evaluations a step. */
 #define NEKTON_METHOD_ADAMS 3
 
+/**
+ * Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+ * archives for microcontrollers, unless they were built with the feature implicit.
+ */
+#define NEKTON_METHOD_GAUSS6 4
+
 /** No place, or nothing. */
 #define NEKTON_PLACE_NONE (-1)
 
@@ -206,9 +214,6 @@ enum {
 
 /** Capability: nekton_model_create, nekton_sim_create and their free work. */
 #define NEKTON_CAP_ALLOC 1
-
-/** Capability: large matrices are factorized by a tuned package. */
-#define NEKTON_CAP_FAER 2
 
 /** Alignment that is enough for every object, bytes. */
 #define NEKTON_ALIGN 8
@@ -515,7 +520,7 @@ typedef struct nekton_joint_info {
 typedef struct nekton_method {
     /** NEKTON_METHOD_... */
     int32_t kind;
-    /** RK4, ABM4: step, s. */
+    /** RK4, ABM4, GAUSS6: step, s. */
     double step;
     /** ADAMS: relative tolerance of each step. */
     double relative;
@@ -770,7 +775,7 @@ typedef struct nekton32_link_info {
 typedef struct nekton32_method {
     /** NEKTON_METHOD_... */
     int32_t kind;
-    /** RK4, ABM4: step, s. */
+    /** RK4, ABM4, GAUSS6: step, s. */
     float step;
     /** ADAMS: relative tolerance of each step. */
     float relative;
@@ -1042,7 +1047,8 @@ nekton_status nekton_sim_step(struct nekton_sim *sim, struct nekton_diag *diag);
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state.
- * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+ * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
 nekton_status nekton_sim_advance(struct nekton_sim *sim, double t_end, struct nekton_diag *diag);
@@ -1056,6 +1062,13 @@ nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
                                        double t_out,
                                        double t_stop,
                                        struct nekton_diag *diag);
+
+/**
+ * How many steps one call of nekton_sim_advance or nekton_sim_advance_dense may make (at first 1000000) before it
+ * ends with TOO_MANY_STEPS, so that no call takes for ever.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (0). One thread per simulation.
+ */
+nekton_status nekton_sim_set_step_limit(struct nekton_sim *sim, uint64_t steps);
 
 /**
  * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,
@@ -1404,7 +1417,8 @@ nekton_status nekton32_sim_step(struct nekton32_sim *sim, struct nekton_diag *di
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state.
- * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+ * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton32_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
 nekton_status nekton32_sim_advance(struct nekton32_sim *sim, float t_end, struct nekton_diag *diag);
@@ -1418,6 +1432,13 @@ nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
                                          float t_out,
                                          float t_stop,
                                          struct nekton_diag *diag);
+
+/**
+ * How many steps one call of nekton32_sim_advance or nekton32_sim_advance_dense may make (at first 1000000) before it
+ * ends with TOO_MANY_STEPS, so that no call takes for ever.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (0). One thread per simulation.
+ */
+nekton_status nekton32_sim_set_step_limit(struct nekton32_sim *sim, uint64_t steps);
 
 /**
  * Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,

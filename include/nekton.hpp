@@ -124,6 +124,7 @@ template <class R> struct Api;
         static constexpr auto sim_step = &P##_sim_step;                                                                        \
         static constexpr auto sim_advance = &P##_sim_advance;                                                                  \
         static constexpr auto sim_advance_dense = &P##_sim_advance_dense;                                                      \
+        static constexpr auto sim_set_step_limit = &P##_sim_set_step_limit;                                                    \
         static constexpr auto sim_set_channel = &P##_sim_set_channel;                                                          \
         static constexpr auto sim_rhs = &P##_sim_rhs;                                                                          \
         static constexpr auto sim_joint_values = &P##_sim_joint_values;                                                        \
@@ -191,6 +192,8 @@ template <class R> struct BasicMethod : detail::Api<R>::Method {
     static BasicMethod rk4(R step) noexcept { return {{NEKTON_METHOD_RK4, step, 0, 0}}; }
     /** Adams-Bashforth-Moulton of order 4 with a fixed step. */
     static BasicMethod abm4(R step) noexcept { return {{NEKTON_METHOD_ABM4, step, 0, 0}}; }
+    /** Implicit Gauss-Legendre of order 6 with a fixed step: the energy does not drift. */
+    static BasicMethod gauss6(R step) noexcept { return {{NEKTON_METHOD_GAUSS6, step, 0, 0}}; }
     /** Variable order and step; both tolerances. */
     static BasicMethod adams(R tolerance) noexcept { return {{NEKTON_METHOD_ADAMS, 0, tolerance, tolerance}}; }
 };
@@ -441,6 +444,11 @@ public:
     nekton_status advance_dense(R t_out, R t_stop, nekton_diag *diag = nullptr)
     {
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_advance_dense(sim_, t_out, t_stop, d); });
+    }
+    /** How many steps one advance may make (at first 1000000). */
+    nekton_status set_step_limit(std::uint64_t steps)
+    {
+        return detail::call(nullptr, [&](nekton_diag *) { return Api::sim_set_step_limit(sim_, steps); });
     }
     /** Sets a channel: (t, u, du/dt, d2u/dt2) at both ends of the coming interval. */
     nekton_status set_channel(std::size_t channel, const std::array<R, 4> &from, const std::array<R, 4> &to,

@@ -4,9 +4,10 @@ classdef Nekton < handle
 %   (see nekton_scene_file).
 %
 %   sim = NEKTON(scene, name, value, ...) with the options
-%     'method'        'adams' (default: variable step and order), 'rk4' or 'abm4' (fixed step)
+%     'method'        'adams' (default: variable step and order), 'rk4', 'abm4' (fixed step) or 'gauss6' (fixed step,
+%                     implicit, for long runs: the energy does not drift)
 %     'tolerance'     of 'adams', relative and absolute (default: the scene's, else 1e-9)
-%     'step'          of 'rk4' and 'abm4' (default: the scene's)
+%     'step'          of 'rk4', 'abm4' and 'gauss6' (default: the scene's)
 %     'controls'      function [c, dc, ddc] = f(t) with the joint angles (or torques) of all joints that no motion is given for,
 %                     and their first and second derivative: columns, in the order of jointNames
 %     'control_step'  time between two calls of it (default 0.05); the angles are quintic in between, so the error is of
@@ -16,6 +17,7 @@ classdef Nekton < handle
 %   sim.step              one step of the method (with controls: one control_step)
 %   sim.advance(t)        to exactly time t
 %   sim.show(t, t_stop)   the same, cheaper when output is wanted at many times up to t_stop
+%   sim.setStepLimit(n)   steps that one such call may make (at first 1e6)
 %   [y, t] = sim.state    integrated state;  sim.setState(t, y) sets it
 %   dy = sim.rhs(t, y)    its rate, for ode45, ode113, lsode; the simulation does not change
 %   sim.time, sim.positions, sim.velocities    3 x links: x, y, theta of the centres of mass, and their rates
@@ -163,6 +165,12 @@ classdef Nekton < handle
             else
                 nekton_mex('advance_dense', self.id, t, t_stop);
             end
+        end
+
+        function setStepLimit(self, n)
+        %SETSTEPLIMIT  Steps that one call of advance or show (with controls: one control step) may make before it ends with the
+        %   error nekton:sim:TooManySteps; at first 1e6.
+            nekton_mex('step_limit', self.id, n);
         end
 
         function t = time(self)

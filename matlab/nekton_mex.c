@@ -394,7 +394,7 @@ typedef struct {
 
 static void create(call *c)
 {
-    static const char *const kinds[] = {"", "rk4", "abm4", "adams"};
+    static const char *const kinds[] = {"", "rk4", "abm4", "adams", "gauss6"};
     nekton_scene_def scene;
     nekton_method method;
     nekton_diag diag;
@@ -584,6 +584,14 @@ static void advance_dense(call *c)
     check(nekton_sim_advance_dense(o->sim, t, stop, &diag), &diag, "sim");
 }
 
+static void step_limit(call *c)
+{
+    object *o = get(c->prhs[0]);
+    uint64_t n = (uint64_t)whole(c->prhs[1], 1, 9007199254740992.0, "limit of steps");
+    check(nekton_sim_set_step_limit(o->sim, n), NULL, "sim");
+    if (o->twin) check(nekton_sim_set_step_limit(o->twin, n), NULL, "sim");
+}
+
 /* u, du, ddu (channels x 3) at time t. */
 static const double *controls(object *o, const mxArray *a)
 {
@@ -764,6 +772,7 @@ static const struct {
     {"step", step, 1, 1, 0},
     {"advance", advance, 2, 2, 0},
     {"advance_dense", advance_dense, 3, 3, 0},
+    {"step_limit", step_limit, 2, 2, 0},
     {"channels", channels, 5, 5, 0},
     {"rhs", rhs, 3, 4, 1},
     {"positions", positions, 1, 1, 1},

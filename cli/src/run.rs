@@ -63,6 +63,7 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
     let method = match run.integrator {
         Integrator::Rk4 { step } => format!("rk4, step {step} s"),
         Integrator::Abm4 { step } => format!("abm4, step {step} s"),
+        Integrator::Gauss6 { step } => format!("gauss6, step {step} s"),
         Integrator::Adams { tolerance } => format!("adams, relative and absolute tolerance {tolerance:e}"),
     };
     let nodes: Vec<String> = setup

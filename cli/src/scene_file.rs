@@ -74,6 +74,11 @@ pub enum Integrator {
         /// Step.
         step: f64,
     },
+    /// Fixed step, order 6, implicit: for long runs.
+    Gauss6 {
+        /// Step.
+        step: f64,
+    },
     /// Variable step, orders 1 to 12.
     Adams {
         /// Relative and absolute tolerance.
@@ -366,7 +371,7 @@ fn read_run(section: &Section<'_>) -> Outcome<RunDef> {
     }
     let integrator = section.or("integrator", Integrator::Adams { tolerance: DEFAULT_TOLERANCE }, |item| {
         let section = item.section("`integrator`", &["method", "tolerance", "step"])?;
-        let method = section.need("method")?.word(&["adams", "rk4", "abm4"])?;
+        let method = section.need("method")?.word(&["adams", "rk4", "abm4", "gauss6"])?;
         let stranger = if method == "adams" { "step" } else { "tolerance" };
         if let Some(item) = section.get(stranger) {
             return Err(item.problem(format!("does not go with method `{method}`")));
@@ -374,6 +379,7 @@ fn read_run(section: &Section<'_>) -> Outcome<RunDef> {
         Ok(match method {
             "adams" => Integrator::Adams { tolerance: section.or("tolerance", DEFAULT_TOLERANCE, Item::positive)? },
             "rk4" => Integrator::Rk4 { step: section.need("step")?.positive()? },
+            "gauss6" => Integrator::Gauss6 { step: section.need("step")?.positive()? },
             _ => Integrator::Abm4 { step: section.need("step")?.positive()? },
         })
     })?;

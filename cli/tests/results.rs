@@ -249,7 +249,7 @@ fn a_torque_driven_joint_starts_where_told() {
 fn integrators_agree() {
     let adams = "{ method = \"adams\", tolerance = 1e-6 }";
     let usual = trajectory(adams, "{ method = \"adams\", tolerance = 1e-10 }");
-    for other in ["rk4", "abm4"] {
+    for other in ["rk4", "abm4", "gauss6"] {
         let rows = trajectory(adams, &format!("{{ method = \"{other}\", step = 0.01 }}"));
         for (a, b) in rows.iter().flatten().zip(usual.iter().flatten()) {
             assert!((a - b).abs() < 1e-6, "{other}: {a} {b}");

@@ -60,7 +60,7 @@ fn trade_writes_table_picture_and_reference_and_recommends() {
         (2, &["graded", "plain"][..]),
         (3, &["exact", "boundary"]),
         (4, &["f64", "f32"]),
-        (5, &["adams", "rk4", "abm4"]),
+        (5, &["adams", "rk4", "abm4", "gauss6"]),
     ] {
         assert!(values.iter().all(|v| rows.iter().any(|r| r[column] == *v)), "{values:?}");
     }

@@ -3,8 +3,8 @@
 //! Per link (x, y, θ) of the centre of mass. Hinge: r_c + R_c h_c = r_p + R_p h_p, θ_c = θ_p + u. Slider:
 //! r_c + R_c h_c = r_p + R_p (h_p + u a), θ_c = θ_p + angle. Every routine walks the links once: O(links).
 
+use crate::configuration::put_pose;
 use crate::model::{Control, Hold, LinkRecord, Model};
-use crate::nystrom::put_pose;
 use crate::scalar::{Complex, Real, cis, complex, perp};
 use crate::se2::{Pose, Twist};
 use crate::workspace::{at, part, part_mut, put};

@@ -6,10 +6,12 @@
 //! W_ik = h Γ'_k/(Γ_k − Γ_i) − (−1)^(k−i) (h/2) cot((s_k − s_i)/2), W_ii = h Γ''_i/(2Γ'_i); the cotangent is real
 //! and matters only for Re G.
 
-use crate::curve::Outline;
+use crate::curve::{Curve, Outline, OutlineView};
+use crate::grading::Ladder;
 use crate::lu::{Factors, factor};
+use crate::near::preimage::Source;
+use crate::near::{Preimage, pole};
 use crate::scalar::{Complex, Real, complex, dot};
-use crate::scene::Shape;
 use crate::se2::Pose;
 use crate::status::{Place, Result, Status};
 use crate::workspace::{part, part_mut, put, take};
@@ -35,6 +37,26 @@ pub struct BoundaryRecord<R> {
     pub store_len: usize,
     /// Origin of the boundary's frame in the shape's drawing frame.
     pub origin: Complex<R>,
+    /// Where the permanent ladders are in the store, and how many.
+    pub ladders_at: usize,
+    /// Number of permanent ladders.
+    pub ladders: usize,
+    /// Where the parameters of tips and corners are in the store.
+    pub tips_at: usize,
+    /// Number of tips and corners.
+    pub tips: usize,
+    /// Where the Fourier sum of the potential of rotation is in the store.
+    pub modes_at: usize,
+    /// Reals of that sum (0: closed form or fixed nodes).
+    pub modes: usize,
+    /// Where the table of pole terms is in the store.
+    pub table_at: usize,
+    /// Its length (0: plain rule).
+    pub table_len: usize,
+    /// Where the rungs of a configuration are in a simulation's buffer.
+    pub rungs_at: usize,
+    /// Reals of them.
+    pub rungs_len: usize,
     /// Where the node arrays are in the store.
     pub data_at: usize,
     /// Where the self block of A is in the store (links only).
@@ -76,6 +98,16 @@ impl<R: Real> Default for BoundaryRecord<R> {
             store_at: 0,
             store_len: 0,
             origin: Complex::default(),
+            ladders_at: 0,
+            ladders: 0,
+            tips_at: 0,
+            tips: 0,
+            modes_at: 0,
+            modes: 0,
+            table_at: 0,
+            table_len: 0,
+            rungs_at: 0,
+            rungs_len: 0,
             data_at: 0,
             self_at: 0,
             regular_at: 0,
@@ -102,29 +134,88 @@ pub struct Nodes<'a, R> {
     pub dy: &'a [R],
     /// Outline parameter t.
     pub t: &'a [R],
+    /// d²x/ds².
+    pub ddx: &'a [R],
+    /// d²y/ds².
+    pub ddy: &'a [R],
     /// Interior potential of rotation (empty for walls and without fluid).
     pub chi: &'a [R],
     /// Step h = 2π/N of the parameter s.
     pub step: R,
 }
 
-impl<R: Real> BoundaryRecord<R> {
-    /// Reals of the node arrays.
-    pub(crate) fn data_len(nodes: usize, with_chi: bool) -> Option<usize> {
-        nodes.checked_mul(if with_chi { 6 } else { 5 })
-    }
-    pub(crate) fn nodes<'a>(&self, store: &'a [R]) -> Nodes<'a, R> {
-        let column = |k: usize| part(store, self.data_at + k * self.nodes, self.nodes);
+impl<'a, R: Real> Nodes<'a, R> {
+    /// Reads the columns x, y, x', y', t, x'', y'', χ of `n` nodes (without the last: χ is empty).
+    pub(crate) fn read(data: &'a [R], n: usize) -> Self {
+        let column = |k: usize| part(data, k * n, n);
         Nodes {
             x: column(0),
             y: column(1),
             dx: column(2),
             dy: column(3),
             t: column(4),
-            chi: if self.link.is_some() { column(5) } else { &[] },
-            step: R::TAU / R::count(self.nodes.max(1)),
+            ddx: column(5),
+            ddy: column(6),
+            chi: column(7),
+            step: R::TAU / R::count(n.max(1)),
         }
     }
+}
+
+impl<R: Real> BoundaryRecord<R> {
+    /// Reals of the node arrays.
+    pub(crate) fn data_len(nodes: usize, with_chi: bool) -> Option<usize> {
+        nodes.checked_mul(if with_chi { 8 } else { 7 })
+    }
+    pub(crate) fn nodes<'a>(&self, store: &'a [R]) -> Nodes<'a, R> {
+        Nodes::read(part(store, self.data_at, self.nodes * if self.link.is_some() { 8 } else { 7 }), self.nodes)
+    }
+    /// Curve and permanent grading.
+    pub(crate) fn view<'a>(&self, store: &'a [R]) -> OutlineView<'a, R> {
+        self.outline.view(part(store, self.store_at, self.store_len))
+    }
+    /// Cosines and sines of the pole terms (empty for the plain rule).
+    pub(crate) fn table<'a>(&self, store: &'a [R]) -> &'a [R] {
+        part(store, self.table_at, self.table_len)
+    }
+    /// The boundary with its own nodes as the source of poles.
+    pub(crate) fn source<'a>(&'a self, store: &'a [R]) -> Source<'a, R> {
+        Source { record: self, nodes: self.nodes(store), view: self.view(store), table: self.table(store) }
+    }
+    /// Permanent ladders.
+    pub(crate) fn ladders<'a>(&self, store: &'a [R]) -> impl Iterator<Item = Ladder<R>> + use<'a, R> {
+        let list = part(store, self.ladders_at, 3 * self.ladders);
+        list.as_chunks::<3>().0.iter().map(|&[t, beta, top]| Ladder { t, beta, top })
+    }
+    /// χ₃ at a point of the outline, whose permanent parameter s is asked for where there is no closed form.
+    pub(crate) fn rotation_potential(&self, store: &[R], x: Complex<R>, s: impl FnOnce() -> R) -> R {
+        match self.view(store).curve {
+            Curve::Ellipse(e) => {
+                // About the centre: ratio·x y. The frame's origin is off the centre by `origin`: rotation about it differs
+                // by the translation −i·origin, whose potential is linear.
+                let (a, b) = (e.a * e.a, e.b * e.b);
+                let centred = x + self.origin;
+                let shift = complex(self.origin.im, -self.origin.re);
+                (a - b) / (a + b) * centred.re * centred.im + dot(shift, x)
+            }
+            _ => fourier_sum(part(store, self.modes_at, self.modes), s()),
+        }
+    }
+}
+
+/// Σ a_m cos ms + b_m sin ms of pairs (a_m, b_m), by Clenshaw's recurrence.
+fn fourier_sum<R: Real>(modes: &[R], s: R) -> R {
+    let (sin, cos) = s.sin_cos();
+    let twice = cos * R::TWO;
+    let (mut a1, mut a2, mut b1, mut b2) = (R::zero(), R::zero(), R::zero(), R::zero());
+    let mut pairs = modes.as_chunks::<2>().0.iter();
+    let first = pairs.next().map_or(R::zero(), |[a, _]| *a);
+    // Downwards: the list is short, and an iterator from the back needs no index.
+    while let Some([a, b]) = pairs.next_back() {
+        (a1, a2) = (*a + twice * a1 - a2, a1);
+        (b1, b2) = (*b + twice * b1 - b2, b1);
+    }
+    first + cos * a1 - a2 + sin * b1
 }
 
 impl<R: Real> Nodes<'_, R> {
@@ -138,115 +229,221 @@ impl<R: Real> Nodes<'_, R> {
     pub(crate) fn tangents(&self) -> impl Iterator<Item = Complex<R>> + Clone + '_ {
         self.dx.iter().zip(self.dy).map(|(x, y)| complex(*x, *y))
     }
+    /// d²Γ/ds².
+    #[inline]
+    pub(crate) fn seconds(&self) -> impl Iterator<Item = Complex<R>> + Clone + '_ {
+        self.ddx.iter().zip(self.ddy).map(|(x, y)| complex(*x, *y))
+    }
 }
 
-/// Fills the node arrays x, y, x', y', t of a boundary whose frame origin is known, and its reach and spacing.
-pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R]) -> Result<()> {
-    let n = record.nodes;
+/// Writes the columns x, y, x', y', t, x'', y'' of `n` nodes about `origin`; returns the largest distance from it and the
+/// largest speed.
+pub(crate) fn write_nodes<R: Real>(
+    view: &OutlineView<'_, R>,
+    origin: Complex<R>,
+    n: usize,
+    data: &mut [R],
+) -> Result<(R, R)> {
     let (mut reach, mut speed) = (R::zero(), R::zero());
-    for k in 0..n {
-        let node = record.outline.view(part(store, record.store_at, record.store_len)).node(k, n)?;
-        let x = node.x - record.origin;
-        for (c, value) in [x.re, x.im, node.dx.re, node.dx.im, node.t].into_iter().enumerate() {
-            put(store, record.data_at + c * n + k, value);
+    let mut k = 0;
+    view.walk(n, |node| {
+        let x = node.x - origin;
+        let values = [x.re, x.im, node.dx.re, node.dx.im, node.t, node.ddx.re, node.ddx.im];
+        for (c, value) in values.into_iter().enumerate() {
+            put(data, c * n + k, value);
         }
         reach = reach.max(crate::scalar::cabs(x));
         speed = speed.max(crate::scalar::cabs(node.dx));
-    }
+        k += 1;
+    })?;
+    Ok((reach, speed))
+}
+
+/// Fills the node arrays of a boundary whose frame origin is known, its reach and spacing, and its table of pole terms.
+pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R]) -> Result<()> {
+    let n = record.nodes;
+    let (outlines, data) = store.split_at_mut_checked(record.data_at).ok_or(Status::Internal)?;
+    let (reach, speed) = write_nodes(&record.view(outlines), record.origin, n, data)?;
     record.spacing = speed * R::TAU / R::count(n.max(1));
     // The outline may bulge beyond its nodes by at most half a spacing.
     record.reach = reach + record.spacing * R::HALF;
+    if record.table_len > 0 {
+        pole::fill_table(n, part_mut(store, record.table_at, record.table_len));
+    }
     if reach.is_finite() && speed.is_finite() { Ok(()) } else { Err(Status::NotFinite.into()) }
 }
 
-/// Calls `entry(i, k, Im W_ik, Re W_ik)` for the self block. O(N²); the cotangents of Re W cost a sine each.
-pub(crate) fn self_weights<R: Real>(
-    record: &BoundaryRecord<R>,
-    store: &[R],
-    mut entry: impl FnMut(usize, usize, R, R),
-) -> Result<()> {
-    let n = record.nodes;
-    let nodes = record.nodes(store);
-    let h = nodes.step;
-    for (k, (g, dg)) in nodes.points().zip(nodes.tangents()).enumerate() {
-        let ddg = record.outline.view(part(store, record.store_at, record.store_len)).node(k, n)?.ddx;
-        for (i, z) in nodes.points().enumerate() {
-            if i == k {
-                let w = ddg / dg * (h * R::HALF);
-                entry(i, k, w.im, w.re);
-            } else {
-                let w = dg / (g - z) * h;
-                let half = R::count(k.abs_diff(i)) * h * R::HALF;
-                let (s, c) = half.sin_cos();
-                let cot = if k > i { c / s } else { -c / s };
-                let cot = if k.abs_diff(i) % 2 == 0 { cot } else { -cot };
-                entry(i, k, w.im, w.re - cot * h * R::HALF);
-            }
-        }
-    }
-    Ok(())
+/// Where the entries of a block go: column-major, the block's first entry at `at`.
+pub(crate) struct Block<'a, R> {
+    pub data: &'a mut [R],
+    pub ld: usize,
+    pub at: usize,
 }
 
-/// χ₃: the function harmonic inside the outline with the normal derivative of the rotation about the frame's
-/// origin. Closed form for an ellipse; otherwise one interior solve, (I − Im W/π + 1/N) χ = −Re W/π |X|²/2, in
-/// `scratch` (N² + N reals). O(N³) once.
-pub(crate) fn rotation_potential<R: Real>(
+impl<R: Real> Block<'_, R> {
+    /// Column `k` of the block, `n` rows.
+    #[inline]
+    pub(crate) fn column(&mut self, k: usize, n: usize) -> &mut [R] {
+        part_mut(self.data, self.at + k * self.ld, n)
+    }
+    /// Adds to one entry.
+    #[inline]
+    pub(crate) fn add(&mut self, i: usize, k: usize, value: R) {
+        crate::workspace::add(self.data, self.at + k * self.ld + i, value);
+    }
+}
+
+/// Fills the block of A = I − Im G of a boundary with itself by the plain rule, with `completion` in every entry, and of
+/// Re G if there is memory for it. O(N²).
+pub(crate) fn fill_self_block<R: Real>(
+    nodes: &Nodes<'_, R>,
+    sign: R,
+    completion: R,
+    matrix: &mut Block<'_, R>,
+    regular: &mut Block<'_, R>,
+) {
+    let (n, h, factor) = (nodes.x.len(), nodes.step, sign / R::PI);
+    for (k, ((g, dg), ddg)) in nodes.points().zip(nodes.tangents()).zip(nodes.seconds()).enumerate() {
+        let weight = dg * (h * factor);
+        let own = ddg / dg * (h * R::HALF * factor);
+        for (i, (a, z)) in matrix.column(k, n).iter_mut().zip(nodes.points()).enumerate() {
+            let d = g - z;
+            let im = (weight.im * d.re - weight.re * d.im) / (d.re * d.re + d.im * d.im);
+            *a = completion + if i == k { R::one() - own.im } else { -im };
+        }
+        if regular.data.is_empty() {
+            continue;
+        }
+        for (i, (a, z)) in regular.column(k, n).iter_mut().zip(nodes.points()).enumerate() {
+            if i == k {
+                *a = own.re;
+                continue;
+            }
+            let half = R::count(k.abs_diff(i)) * h * R::HALF;
+            let (s, c) = half.sin_cos();
+            let cot = if (k > i) == (k.abs_diff(i) % 2 == 0) { c / s } else { -c / s };
+            *a = (weight / (g - z)).re - cot * h * R::HALF * factor;
+        }
+    }
+}
+
+/// Adds the pole term of a preimage to row `i` of both blocks.
+pub(crate) fn add_pole_term<R: Real>(
+    p: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    sign: R,
+    i: usize,
+    matrix: &mut Block<'_, R>,
+    regular: &mut Block<'_, R>,
+) {
+    let factor = sign / R::PI;
+    pole::each_weight(p, table, nodes, |k, w| {
+        matrix.add(i, k, -factor * w.im);
+        if !regular.data.is_empty() {
+            regular.add(i, k, factor * w.re);
+        }
+    });
+}
+
+/// Adds the pole terms of the opposite flank to a boundary's block with itself.
+pub(crate) fn add_flank_terms<R: Real>(
+    source: &Source<'_, R>,
+    sign: R,
+    matrix: &mut Block<'_, R>,
+    regular: &mut Block<'_, R>,
+) {
+    if source.table.is_empty() {
+        return;
+    }
+    for (i, z) in source.nodes.points().enumerate() {
+        for p in source.preimages(z, Some(i)).iter().flatten() {
+            add_pole_term(p, source.table, source.nodes.x.len(), sign, i, matrix, regular);
+        }
+    }
+}
+
+/// Fills χ₃ at the nodes: the function harmonic inside the outline with the normal derivative of the rotation about the
+/// frame's origin. Closed form for an ellipse; otherwise one interior solve, (I − Im W/π + 1/M) χ = −Re W/π |X|²/2, on the
+/// nodes or, where nodes will move, on twice as many, in `scratch`, of which the Fourier sum in s is kept. O(M³) once.
+pub(crate) fn fill_rotation_potential<R: Real>(
     record: &BoundaryRecord<R>,
-    shape: &Shape<'_, R>,
     store: &mut [R],
     scratch: &mut [R],
 ) -> Result<()> {
     let n = record.nodes;
-    let chi_at = record.data_at + 5 * n;
-    if let Shape::Ellipse { a, b } = *shape {
-        let ratio = (a * a - b * b) / (a * a + b * b);
-        for k in 0..n {
-            let nodes = record.nodes(store);
-            let x = complex(crate::workspace::at(nodes.x, k), crate::workspace::at(nodes.y, k));
-            // About the centre: ratio·x y. The frame's origin is off the centre by `origin`: rotation about it
-            // differs by the translation −i·origin, whose potential is linear.
-            let centred = x + record.origin;
-            let shift = complex(record.origin.im, -record.origin.re);
-            put(store, chi_at + k, ratio * centred.re * centred.im + dot(shift, x));
+    if !matches!(record.view(store).curve, Curve::Ellipse(_)) {
+        let m = potential_nodes(record.modes, n);
+        let mut rest = scratch;
+        let matrix = take(&mut rest, m * m + m)?;
+        let regular = take(&mut rest, m * m)?;
+        let pivots = take(&mut rest, m)?;
+        let data = take(&mut rest, 7 * m)?;
+        let table = take(&mut rest, if record.table_len > 0 { 4 * m } else { 0 })?;
+        if !table.is_empty() {
+            pole::fill_table(m, table);
         }
-        return Ok(());
+        let view = record.view(store);
+        write_nodes(&view, record.origin, m, data)?;
+        let nodes = Nodes::read(data, m);
+        let (block, rhs) = matrix.split_at_mut_checked(m * m).ok_or(Status::Internal)?;
+        let (mut a, mut g) = (Block { data: block, ld: m, at: 0 }, Block { data: &mut *regular, ld: m, at: 0 });
+        fill_self_block(&nodes, R::one(), R::one() / R::count(m), &mut a, &mut g);
+        add_flank_terms(&Source { record, nodes, view, table }, R::one(), &mut a, &mut g);
+        rhs.fill(R::zero());
+        for (column, x) in regular.chunks_exact(m.max(1)).zip(nodes.points()) {
+            crate::workspace::axpy(rhs, -dot(x, x) * R::HALF, column);
+        }
+        factor(matrix, m, m, pivots)?;
+        let (block, chi) = matrix.split_at_mut_checked(m * m).ok_or(Status::Internal)?;
+        Factors { lu: block, ld: m, pivots }.back_substitute(chi);
+        fourier_modes(chi, part_mut(store, record.modes_at, record.modes));
+        if record.modes == 0 {
+            crate::workspace::copy(part_mut(store, record.data_at + 7 * n, n), chi);
+            return Ok(());
+        }
     }
-    let mut rest = scratch;
-    let matrix = take(&mut rest, n * n + n)?;
-    let pivots = take(&mut rest, n)?;
-    let (block, rhs) = matrix.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
-    let constant = R::one() / R::count(n);
-    for x in rhs.iter_mut() {
-        *x = R::zero();
+    for k in 0..n {
+        let column = |c: usize| crate::workspace::at(store, record.data_at + c * n + k);
+        let chi = record
+            .rotation_potential(store, complex(column(0), column(1)), || R::TAU * R::count(k) / R::count(n.max(1)));
+        put(store, record.data_at + 7 * n + k, chi);
     }
-    {
-        let nodes = record.nodes(store);
-        self_weights(record, store, |i, k, im, re| {
-            let identity = if i == k { R::one() } else { R::zero() };
-            put(block, k * n + i, identity - im / R::PI + constant);
-            let x = complex(crate::workspace::at(nodes.x, k), crate::workspace::at(nodes.y, k));
-            crate::workspace::add(rhs, i, -re / R::PI * dot(x, x) * R::HALF);
-        })?;
-    }
-    factor(matrix, n, n, pivots)?;
-    let (block, rhs) = matrix.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
-    Factors { lu: block, ld: n, pivots }.back_substitute(rhs);
-    crate::workspace::copy(part_mut(store, chi_at, n), rhs);
     Ok(())
 }
 
-/// Fills the self block of A = I − Im G (column-major, N × N) and, if asked for, of Re G.
-pub(crate) fn fill_self_block<R: Real>(
-    record: &BoundaryRecord<R>,
-    store: &[R],
-    block: &mut [R],
-    regular: &mut [R],
-) -> Result<()> {
-    let n = record.nodes;
-    let factor = record.sign / R::PI;
-    self_weights(record, store, |i, k, im, re| {
-        let identity = if i == k { R::one() } else { R::zero() };
-        put(block, k * n + i, identity - factor * im);
-        put(regular, k * n + i, factor * re);
-    })
+/// Nodes on which χ₃ is computed: as many as there are numbers kept of its Fourier sum, or the boundary's own.
+fn potential_nodes(modes: usize, nodes: usize) -> usize {
+    if modes == 0 { nodes } else { modes - 2 }
+}
+
+/// Reals of scratch for χ₃ of an outline without closed form.
+pub(crate) fn potential_scratch(modes: usize, nodes: usize) -> Option<usize> {
+    let m = potential_nodes(modes, nodes);
+    m.checked_mul(m)?.checked_mul(2)?.checked_add(m.checked_mul(13)?)
+}
+
+/// Reals that the Fourier sum of χ₃ on 2·`nodes` points takes.
+pub(crate) fn modes_len(nodes: usize) -> Option<usize> {
+    nodes.checked_mul(2)?.checked_add(2)
+}
+
+/// Pairs (a_m, b_m), m = 0 … M/2, of M equispaced samples. O(M²).
+fn fourier_modes<R: Real>(samples: &[R], modes: &mut [R]) {
+    let count = R::count(samples.len().max(1));
+    let half = samples.len() / 2;
+    for (m, pair) in modes.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+        let turn = crate::scalar::cis(R::TAU * R::count(m) / count);
+        let (mut power, mut sum) = (complex(R::one(), R::zero()), Complex::<R>::default());
+        for (k, f) in samples.iter().enumerate() {
+            // The power is refreshed so that rounding does not pile up.
+            if k % 16 == 0 {
+                power = crate::scalar::cis(R::TAU * R::count(m * k % samples.len().max(1)) / count);
+            }
+            sum += power * *f;
+            power *= turn;
+        }
+        let scale = if m == 0 || m == half { R::one() } else { R::TWO } / count;
+        *pair = [sum.re * scale, sum.im * scale];
+    }
 }

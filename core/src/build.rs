@@ -1,13 +1,17 @@
 //! Fills a model's records and store: boundaries, links, coordinates.
 
-use crate::boundary::{BoundaryRecord, Core, fill_nodes, fill_self_block, rotation_potential};
+use crate::boundary::{
+    Block, BoundaryRecord, Core, add_flank_terms, fill_nodes, fill_rotation_potential, fill_self_block,
+};
+use crate::contact::Placed;
 use crate::layout::{Traits, each_link, items, wall_count};
 use crate::model::{Control, CoordinateRecord, Formulation, Hold, LinkRecord};
+use crate::near::{self, LADDER_LIST, ladders};
 use crate::scalar::{Complex, Real, cabs, complex};
 use crate::scene::{Description, Drive, Joint, JointKind, Mass, Root, Shape, Signal};
 use crate::signal::SignalRecord;
 use crate::status::{Error, Place, Result, Status};
-use crate::workspace::part_mut;
+use crate::workspace::{copy, part, part_mut, put};
 
 pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
     scene: &S,
@@ -27,6 +31,7 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         });
         let twin = shared.and_then(|(j, _)| boundaries.get(j).copied());
         let Some(record) = boundaries.get_mut(i) else { return Err(Status::Internal.into()) };
+        let rungs = (record.rungs_at, record.rungs_len);
         if let Some(twin) = twin {
             *record = BoundaryRecord { first: record.first, ..twin };
         }
@@ -36,11 +41,16 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         record.nodes = item.nodes;
         record.circulation = item.circulation;
         record.pose = item.pose;
+        (record.rungs_at, record.rungs_len) = rungs;
         if twin.is_some() {
             continue;
         }
         let own = part_mut(store, record.store_at, record.store_len);
         (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
+        if traits.graded {
+            list_ladders(record, &item.shape, store).map_err(here)?;
+        }
+        let own = part(store, record.store_at, record.store_len);
         if let Some(centre) = item.centre {
             let area = record.outline.view(own).properties().map_err(here)?;
             record.origin = area.centroid + complex(centre[0], centre[1]);
@@ -50,19 +60,72 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
             continue;
         }
         if item.link.is_some() {
-            rotation_potential(record, &item.shape, store, scratch).map_err(here)?;
+            fill_rotation_potential(record, store, scratch).map_err(here)?;
             if traits.formulation != Formulation::Kirchhoff {
                 let n2 = item.nodes * item.nodes;
                 // The blocks lie behind the node arrays they are made from.
-                let (nodes, blocks) = store.split_at_mut_checked(record.self_at).ok_or(Status::Internal)?;
+                let (data, blocks) = store.split_at_mut_checked(record.self_at).ok_or(Status::Internal)?;
                 let (block, rest) = blocks.split_at_mut_checked(n2).ok_or(Status::Internal)?;
                 let regular = if traits.circulation { part_mut(rest, 0, n2) } else { &mut [] };
-                fill_self_block(record, nodes, block, regular).map_err(here)?;
+                let (mut block, mut regular) =
+                    (Block { data: block, ld: item.nodes, at: 0 }, Block { data: regular, ld: item.nodes, at: 0 });
+                let source = record.source(data);
+                fill_self_block(&source.nodes, record.sign, R::zero(), &mut block, &mut regular);
+                add_flank_terms(&source, record.sign, &mut block, &mut regular);
             }
         }
         if traits.circulation {
             record.core = core_of(record, &item.shape, store);
         }
+    }
+    Ok(())
+}
+
+/// Lists the permanent ladders, tips and corners of a compiled outline in the store.
+fn list_ladders<R: Real>(record: &mut BoundaryRecord<R>, shape: &Shape<'_, R>, store: &mut [R]) -> Result<()> {
+    let (most_ladders, most_tips) = shape.ladder_counts()?;
+    let (lists, own) = store.split_at_mut_checked(record.store_at).ok_or(Status::Internal)?;
+    let own = part(own, 0, record.store_len);
+    let (outline, ladders_at, tips_at) = (record.outline, record.ladders_at, record.tips_at);
+    (record.ladders, record.tips) = (0, 0);
+    outline.each_ladder(own, |l| {
+        if record.ladders < most_ladders {
+            copy(part_mut(lists, ladders_at + 3 * record.ladders, 3), &[l.t, l.beta, l.top]);
+            record.ladders += 1;
+        }
+    });
+    outline.each_tip(own, |t| {
+        if record.tips < most_tips {
+            put(lists, tips_at + record.tips, t);
+            record.tips += 1;
+        }
+    });
+    Ok(())
+}
+
+/// Ladders that walls cause on each other: placed once, they become permanent, and the nodes follow.
+pub(crate) fn grade_walls<R: Real>(walls: &mut [BoundaryRecord<R>], store: &mut [R], lists: &mut [R]) -> Result<()> {
+    let lists = part_mut(lists, 0, walls.len() * LADDER_LIST);
+    ladders::clear(lists);
+    let placed = |b, store| Placed { record: b, nodes: b.nodes(store), pose: b.pose };
+    for (i, a) in walls.iter().enumerate() {
+        for (j, b) in walls.iter().enumerate().skip(i + 1) {
+            ladders::place_pair(store, (i, &placed(a, store)), (j, &placed(b, store)), lists);
+        }
+    }
+    for (i, b) in walls.iter_mut().enumerate() {
+        if near::ladder_count(part(lists, i * LADDER_LIST, LADDER_LIST)) == 0 {
+            continue;
+        }
+        for l in ladders::listed(lists, i) {
+            copy(part_mut(store, b.ladders_at + 3 * b.ladders, 3), &[l.t, l.beta, l.top]);
+            b.ladders += 1;
+        }
+        let (before, own) = store.split_at_mut_checked(b.store_at).ok_or(Status::Internal)?;
+        let mut outline = b.outline;
+        outline.regrade(b.ladders(before), part_mut(own, 0, b.store_len)).map_err(|e| e.at(b.place))?;
+        b.outline = outline;
+        fill_nodes(b, store).map_err(|e| e.at(b.place))?;
     }
     Ok(())
 }

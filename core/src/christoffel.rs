@@ -9,8 +9,9 @@
 
 use crate::articulation::twist_of;
 use crate::boundary::Nodes;
-use crate::model::Model;
-use crate::nystrom::{Poses, TargetColumns, fill_targets, induced_velocity, induced_velocity_both};
+use crate::configuration::Configuration;
+use crate::configuration::fill_targets;
+use crate::nystrom::{TargetColumns, add_pole_velocity, induced_velocity, induced_velocity_both};
 use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
 use crate::se2::Twist;
 use crate::workspace::{copy, part, part_mut};
@@ -41,26 +42,26 @@ pub(crate) struct Induced<'a, R> {
 /// Visits every ordered pair of different boundaries of which one moves, with h = D_ij w_j at the target's nodes.
 /// `w` is complex (an empty imaginary part is 0). 20 flops per pair of nodes.
 pub(crate) fn each_induced<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     wx: &[R],
     wy: &[R],
     s: &mut PairScratch<'_, R>,
     mut visit: impl FnMut(Induced<'_, R>),
 ) {
-    for (j, source, source_nodes) in model.each_boundary() {
-        for (i, target, nodes) in model.each_boundary() {
+    for (j, source, source_nodes) in c.each_boundary() {
+        for (i, target, nodes) in c.each_boundary() {
             if i == j || (source.link.is_none() && target.link.is_none()) {
                 continue;
             }
             let n = target.nodes;
             let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
-            fill_targets(&nodes, poses.get(i), poses.get(j), zx, zy);
+            fill_targets(&nodes, c.pose(i), c.pose(j), zx, zy);
             let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
             hx.fill(R::zero());
             hy.fill(R::zero());
             let (wx, wy) = (part(wx, source.first, source.nodes), part(wy, source.first, source.nodes));
             induced_velocity(source, &source_nodes, wx, wy, zx, zy, hx, hy);
+            add_pole_velocity(c, (j, source), target.first, [wx, wy], [&[], &[]], [hx, hy], &mut []);
             visit(Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy });
         }
     }
@@ -68,8 +69,8 @@ pub(crate) fn each_induced<R: Real>(
 
 /// Twist of a boundary (0 for walls) from velocities of the links.
 #[inline]
-pub(crate) fn boundary_twist<R: Real>(model: &Model<'_, R>, rates: &[R], boundary: usize) -> Twist<R> {
-    match model.boundary(boundary).and_then(|(b, _)| b.link) {
+pub(crate) fn boundary_twist<R: Real>(c: &Configuration<'_, R>, rates: &[R], boundary: usize) -> Twist<R> {
+    match c.boundary(boundary).and_then(|(b, _)| b.link) {
         Some(link) => twist_of(rates, link),
         None => Twist::default(),
     }
@@ -78,12 +79,11 @@ pub(crate) fn boundary_twist<R: Real>(model: &Model<'_, R>, rates: &[R], boundar
 /// Rate of change of the target's nodes in the source's frame, node by node.
 pub(crate) fn relative_rates<'a, R: Real>(
     pair: &Induced<'a, R>,
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     rates: &[R],
 ) -> impl Iterator<Item = Complex<R>> + 'a {
-    let (p, q) = (poses.get(pair.target), poses.get(pair.source));
-    let (vi, vj) = (boundary_twist(model, rates, pair.target), boundary_twist(model, rates, pair.source));
+    let (p, q) = (c.pose(pair.target), c.pose(pair.source));
+    let (vi, vj) = (boundary_twist(c, rates, pair.target), boundary_twist(c, rates, pair.source));
     let nodes = pair.nodes;
     let shift = p.origin - q.origin;
     // `nodes` borrows the model's store, not the pair.
@@ -97,13 +97,12 @@ pub(crate) fn relative_rates<'a, R: Real>(
 /// source) from the source's; f = weight · h, turned to world directions.
 pub(crate) fn add_pose_gradient<R: Real>(
     pair: &Induced<'_, R>,
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     weight: &[R],
     scale: R,
     gradient: &mut [R],
 ) {
-    let (p, q) = (poses.get(pair.target), poses.get(pair.source));
+    let (p, q) = (c.pose(pair.target), c.pose(pair.source));
     let shift = p.origin - q.origin;
     let (mut force, mut turn_target, mut turn_source) = (Complex::default(), R::zero(), R::zero());
     let values = weight.iter().zip(pair.hx).zip(pair.hy);
@@ -117,13 +116,19 @@ pub(crate) fn add_pose_gradient<R: Real>(
     }
     // (Im Σf, Im iΣf) = (Im, Re)
     let linear = complex(force.im, force.re) * scale;
-    add_three(model, pair.target, linear, turn_target * scale, gradient);
-    add_three(model, pair.source, -linear, -turn_source * scale, gradient);
+    add_three(c, pair.target, linear, turn_target * scale, gradient);
+    add_three(c, pair.source, -linear, -turn_source * scale, gradient);
 }
 
 /// Adds to a boundary's three reals, if it moves.
-pub(crate) fn add_three<R: Real>(model: &Model<'_, R>, boundary: usize, linear: Complex<R>, angular: R, out: &mut [R]) {
-    if let Some(link) = model.boundary(boundary).and_then(|(b, _)| b.link) {
+pub(crate) fn add_three<R: Real>(
+    c: &Configuration<'_, R>,
+    boundary: usize,
+    linear: Complex<R>,
+    angular: R,
+    out: &mut [R],
+) {
+    if let Some(link) = c.boundary(boundary).and_then(|(b, _)| b.link) {
         for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip([linear.re, linear.im, angular]) {
             *o += x;
         }
@@ -133,8 +138,7 @@ pub(crate) fn add_three<R: Real>(model: &Model<'_, R>, boundary: usize, linear: 
 /// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
 /// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per pair of nodes.
 pub(crate) fn pair_pass<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     qd: &[R],
     density: &[R],
     adjoint: &[R],
@@ -144,26 +148,24 @@ pub(crate) fn pair_pass<R: Real>(
     out.rate.fill(R::zero());
     out.transposed.fill(R::zero());
     out.gradient.fill(R::zero());
-    for (j, source, source_nodes) in model.each_boundary() {
-        for (i, target, nodes) in model.each_boundary() {
+    for (j, source, source_nodes) in c.each_boundary() {
+        for (i, target, nodes) in c.each_boundary() {
             if i == j || (source.link.is_none() && target.link.is_none()) {
                 continue;
             }
             let n = target.nodes;
             let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
-            fill_targets(&nodes, poses.get(i), poses.get(j), zx, zy);
+            fill_targets(&nodes, c.pose(i), c.pose(j), zx, zy);
             let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
             hx.fill(R::zero());
             hy.fill(R::zero());
             let (fx, fy) = (part_mut(s.fx, 0, n), part_mut(s.fy, 0, n));
             let weights = part(adjoint, target.first, n);
             let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
-            for (((fx, fy), zd), w) in
-                fx.iter_mut().zip(fy.iter_mut()).zip(relative_rates(&pair, model, poses, qd)).zip(weights)
-            {
+            for (((fx, fy), zd), w) in fx.iter_mut().zip(fy.iter_mut()).zip(relative_rates(&pair, c, qd)).zip(weights) {
                 (*fx, *fy) = (zd.re * *w, zd.im * *w);
             }
-            let mut columns = TargetColumns { zx, zy, fx, fy, hx, hy };
+            let mut columns = TargetColumns { zx, zy, fx, fy, hx: &mut *hx, hy: &mut *hy };
             let transposed = part_mut(out.transposed, source.first, source.nodes);
             induced_velocity_both(
                 source,
@@ -172,13 +174,15 @@ pub(crate) fn pair_pass<R: Real>(
                 &mut columns,
                 transposed,
             );
+            let w = part(density, source.first, source.nodes);
+            add_pole_velocity(c, (j, source), target.first, [w, &[]], [fx, fy], [hx, hy], transposed);
             let pair = Induced { hx, hy, ..pair };
-            let rates = relative_rates(&pair, model, poses, qd);
+            let rates = relative_rates(&pair, c, qd);
             let h = pair.hx.iter().zip(pair.hy);
             for ((a, zd), (hx, hy)) in part_mut(out.rate, pair.first, pair.len).iter_mut().zip(rates).zip(h) {
                 *a += zd.re * *hy + zd.im * *hx;
             }
-            add_pose_gradient(&pair, model, poses, weights, R::one(), out.gradient);
+            add_pose_gradient(&pair, c, weights, R::one(), out.gradient);
         }
     }
 }
@@ -237,7 +241,7 @@ pub(crate) fn periodic_derivative<R: Real>(f: &[R], k: usize) -> R {
 ///
 /// `potential` is ψ of the motion; `v` the links' velocities in their frames; `work` scratch of length N. O(N²).
 pub(crate) fn boundary_formula<R: Real>(
-    model: &Model<'_, R>,
+    c: &Configuration<'_, R>,
     potential: &[R],
     v: &[R],
     kernel: &mut [R],
@@ -245,7 +249,7 @@ pub(crate) fn boundary_formula<R: Real>(
     out: &mut [R],
 ) {
     kernel.fill(R::zero());
-    for (_, b, nodes) in model.each_boundary() {
+    for (_, b, nodes) in c.each_boundary() {
         let Some(link) = b.link else { continue };
         let twist = twist_of(v, link);
         let psi = part(potential, b.first, b.nodes);

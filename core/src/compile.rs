@@ -1,9 +1,9 @@
 //! From a scene to a model: the set-up that happens once.
 
 use crate::boundary::BoundaryRecord;
-use crate::build::{build_boundaries, build_coordinates, build_links};
+use crate::build::{build_boundaries, build_coordinates, build_links, grade_walls};
 use crate::layout::{Layout, Traits, each_link, items, lay_out, motions, wall_count};
-use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead};
+use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead, NearDims};
 use crate::plan::Plan;
 use crate::scalar::Real;
 use crate::scene::{CirculationModel, Description};
@@ -75,6 +75,14 @@ impl<'a, R: Real> Model<'a, R> {
                     data_at: s.data_at,
                     self_at: s.self_at,
                     regular_at: s.regular_at,
+                    ladders_at: s.ladders_at,
+                    tips_at: s.tips_at,
+                    modes_at: s.modes_at,
+                    modes: s.modes,
+                    table_at: s.table_at,
+                    table_len: s.table_len,
+                    rungs_at: s.rungs_at,
+                    rungs_len: s.rungs_len,
                     ..BoundaryRecord::default()
                 };
             }
@@ -86,6 +94,10 @@ impl<'a, R: Real> Model<'a, R> {
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
+        if traits.graded && head.plan.walls > 1 {
+            let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
+            grade_walls(walls, store, scratch)?;
+        }
         if traits.fluid {
             let walls = memory.boundaries.get(..head.plan.walls).unwrap_or(&[]);
             crate::nystrom::fill_walls(walls, &head, traits.circulation, store);
@@ -170,6 +182,10 @@ fn head<R: Real, S: Description<R>>(
         walls_at: layout.walls_at,
         walls_regular_at: layout.walls_regular_at,
         channels,
+        near: NearDims {
+            nodes: if traits.graded { layout.unknowns } else { 0 },
+            rungs: if traits.graded { layout.rungs } else { 0 },
+        },
         tracks_work,
         prescribed_moves,
         lone_added_mass: [R::zero(); 9],

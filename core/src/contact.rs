@@ -1,12 +1,12 @@
 //! Distances between boundaries: the smallest gap, overlap, and motion that could have jumped across.
 
 use crate::boundary::{BoundaryRecord, Nodes};
+use crate::configuration::{Poses, targets};
 use crate::model::Model;
-use crate::nystrom::{Poses, targets};
-use crate::scalar::{Complex, Real, cabs, cis, dot, perp};
+use crate::scalar::{Complex, Real, cabs, cis, complex, dot, perp};
 use crate::se2::Pose;
 use crate::status::Place;
-use crate::workspace::{at, copy, part};
+use crate::workspace::{at, copy};
 
 /// The smallest distance between two boundaries of which one moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -44,29 +44,110 @@ pub(crate) struct Placed<'a, R> {
 
 impl<R: Real> Placed<'_, R> {
     /// Position, derivatives by t and unit normal into the fluid, in the world's directions about `origin`.
-    fn jet(&self, store: &[R], t: R, origin: Complex<R>) -> [Complex<R>; 4] {
-        let view = self.record.outline.view(part(store, self.record.store_at, self.record.store_len));
-        let [x, d, dd] = view.curve.jet_real(t);
+    pub(crate) fn jet(&self, store: &[R], t: R, origin: Complex<R>) -> [Complex<R>; 4] {
+        let [x, d, dd] = self.record.view(store).curve.jet_real(t);
         let x = self.pose.origin - origin + self.pose.turned(x - self.record.origin);
         let (d, dd) = (self.pose.turned(d), self.pose.turned(dd));
         let normal = perp(d) / cabs(d) * self.record.sign;
         [x, d, dd, normal]
     }
+
+    /// A point of the outline, in the world.
+    pub(crate) fn point(&self, store: &[R], t: R) -> Complex<R> {
+        self.pose.place(self.record.view(store).curve.jet_real(t)[0] - self.record.origin)
+    }
+}
+
+/// Squared distance of z (in the boundary's frame) to its closest node, in eight lanes so that it vectorizes.
+fn square_to<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>) -> R {
+    let mut lanes = [R::MAX; 8];
+    for (x, y) in nodes.x.chunks(8).zip(nodes.y.chunks(8)) {
+        for ((best, x), y) in lanes.iter_mut().zip(x).zip(y) {
+            let (dx, dy) = (*x - z.re, *y - z.im);
+            let d = dx * dx + dy * dy;
+            *best = if d < *best { d } else { *best };
+        }
+    }
+    lanes.iter().fold(R::MAX, |m, d| if *d < m { *d } else { m })
+}
+
+/// The node of which that is the distance.
+fn node_at<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>, square: R) -> usize {
+    let is = |(x, y): (&R, &R)| {
+        let (dx, dy) = (*x - z.re, *y - z.im);
+        dx * dx + dy * dy <= square
+    };
+    nodes.x.iter().zip(nodes.y).position(is).unwrap_or(0)
+}
+
+/// Parameters and distance of the closest points of two outlines: up to three local minima, from those of the nodes'
+/// distances by Newton's method. O(N_i N_j).
+pub(crate) fn closest_points<R: Real>(
+    a: &Placed<'_, R>,
+    b: &Placed<'_, R>,
+    store: &[R],
+    mut visit: impl FnMut(R, R, R),
+) {
+    let mut minima = [(R::MAX, 0, 0); 3];
+    let z = |i: usize| {
+        let x = complex(at(a.nodes.x, i), at(a.nodes.y, i));
+        let (turn, shift) = (b.pose.unturned(a.pose.turn), b.pose.unturned(a.pose.origin - b.pose.origin));
+        shift + turn * x
+    };
+    let n = a.nodes.x.len();
+    let (mut before, mut here) = (square_to(&b.nodes, z(n.saturating_sub(1))), square_to(&b.nodes, z(0)));
+    for i in 0..n {
+        let next = square_to(&b.nodes, z(if i + 1 == n { 0 } else { i + 1 }));
+        if here <= next && here < before {
+            let mut candidate = (here, i, node_at(&b.nodes, z(i), here));
+            for slot in minima.iter_mut() {
+                if candidate.0 < slot.0 {
+                    core::mem::swap(slot, &mut candidate);
+                }
+            }
+        }
+        (before, here) = (here, next);
+    }
+    for (square, i, k) in minima {
+        if square < R::MAX {
+            let (s, t, distance, _) = refine(a, b, store, at(a.nodes.t, i), at(b.nodes.t, k), square.sqrt());
+            visit(s, t, distance);
+        }
+    }
+}
+
+/// Parameter of the point of an outline closest to x (in the world), and its distance. O(N).
+pub(crate) fn foot<R: Real>(b: &Placed<'_, R>, store: &[R], x: Complex<R>) -> (R, R) {
+    let z = b.pose.unturned(x - b.pose.origin);
+    let square = square_to(&b.nodes, z);
+    let start = at(b.nodes.t, node_at(&b.nodes, z, square));
+    let (mut best, mut t) = ((square.sqrt(), start), start);
+    let curve = b.record.view(store).curve;
+    for _ in 0..8 {
+        let [y, d, dd] = curve.jet_real(t);
+        let away = y - b.record.origin - z;
+        let distance = cabs(away);
+        if distance <= best.0 {
+            best = (distance, t);
+        }
+        let (slope, square) = (dot(away, d), dot(d, d));
+        let bend = (square + dot(away, dd)).max(square * R::lit(0.1));
+        let step = -slope / bend;
+        if !step.is_finite() || step.abs() < R::EPSILON.sqrt() * R::lit(1e-2) {
+            break;
+        }
+        t += step.max(-b.nodes.step).min(b.nodes.step);
+    }
+    (best.1, best.0)
 }
 
 /// Closest pair of nodes: squared distance and the two nodes. O(N_i N_j).
 fn closest_nodes<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> (R, usize, usize) {
     let mut best = (R::MAX, 0, 0);
     for (i, z) in targets(&a.nodes, a.pose, b.pose).enumerate() {
-        let distance = |x: &R, y: &R| {
-            let (dx, dy) = (*x - z.re, *y - z.im);
-            dx * dx + dy * dy
-        };
-        let row =
-            b.nodes.x.iter().zip(b.nodes.y).map(|(x, y)| distance(x, y)).fold(R::MAX, |m, d| if d < m { d } else { m });
+        let row = square_to(&b.nodes, z);
         if row < best.0 {
-            let k = b.nodes.x.iter().zip(b.nodes.y).position(|(x, y)| distance(x, y) <= row).unwrap_or(0);
-            best = (row, i, k);
+            best = (row, i, node_at(&b.nodes, z, row));
         }
     }
     best
@@ -76,39 +157,59 @@ fn closest_nodes<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> (R, usize, us
 /// Newton on both outlines.
 pub(crate) fn signed_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) -> R {
     let (square, i, k) = closest_nodes(a, b);
-    let coarse = square.sqrt();
+    let (_, _, distance, sign) = refine(a, b, store, at(a.nodes.t, i), at(b.nodes.t, k), square.sqrt());
+    distance * sign
+}
+
+/// Newton's method on both outlines from the parameters (s, t) at distance `coarse`: parameters, distance, and −1 if the
+/// closest points show that the outlines overlap, else 1.
+///
+/// Solved is x'(s)·n(t) = 0 and (x − y)·y'(t) = 0 with n the normal of the second outline, which does not degenerate as
+/// the distance vanishes and continues to the deepest point of a slight overlap.
+fn refine<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R], mut s: R, mut t: R, coarse: R) -> (R, R, R, R) {
     let origin = a.pose.origin;
-    let (mut s, mut t) = (at(a.nodes.t, i), at(b.nodes.t, k));
-    let mut best = coarse;
-    let mut sign = R::one();
-    for _ in 0..12 {
+    let limit = R::TWO * a.nodes.step.max(b.nodes.step);
+    // The closest pair seen, in case Newton's method does not settle.
+    let mut best = (s, t, coarse, R::one());
+    for _ in 0..24 {
         let ([x, dx, ddx, _], [y, dy, ddy, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
         let d = x - y;
-        let distance = cabs(d);
-        if distance <= best * (R::one() + R::lit(4.0) * R::EPSILON) {
-            best = distance;
-            sign = if dot(d, normal) < R::zero() { -R::one() } else { R::one() };
+        let (distance, depth) = (cabs(d), dot(d, normal));
+        if distance <= best.2 * (R::one() + R::lit(4.0) * R::EPSILON) {
+            best = (s, t, distance, if depth < R::zero() { -R::one() } else { R::one() });
         }
-        // Gradient and Hessian of |d|²/2; Gauss–Newton where the Hessian is not positive.
-        let (gs, gt) = (dot(d, dx), -dot(d, dy));
-        let (mut hss, hst, mut htt) = (dot(dx, dx) + dot(d, ddx), -dot(dx, dy), dot(dy, dy) - dot(d, ddy));
-        if hss * htt - hst * hst <= R::lit(1e-6) * dot(dx, dx) * dot(dy, dy) || hss <= R::zero() {
-            (hss, htt) = (dot(dx, dx) * R::lit(1.01), dot(dy, dy) * R::lit(1.01));
-        }
-        let det = hss * htt - hst * hst;
-        let (mut ds, mut dt) = ((hst * gt - htt * gs) / det, (hst * gs - hss * gt) / det);
-        // No further than two nodes at a time.
-        let limit = R::TWO * a.nodes.step.max(b.nodes.step);
+        let (square, own) = (dot(dy, dy), dot(dx, dx));
+        // n' = −σκ|y'| τ = (n·y'')/|y'|² · (−y')
+        let bend = dot(normal, ddy) / square;
+        let (g, h) = (dot(dx, normal), dot(d, dy));
+        let (gs, gt) = (dot(ddx, normal), -bend * dot(dx, dy));
+        let (hs, ht) = (dot(dx, dy), (dot(d, ddy) - square).min(R::lit(-0.1) * square));
+        // The foot on the second outline follows; what remains is one equation for s, whose slope is positive at a minimum.
+        let slope = (gs - gt * hs / ht).max(R::lit(1e-6) * own / a.record.reach);
+        let (mut ds, mut dt) = (-(g - gt * h / ht) / slope, R::zero());
+        dt -= (h + hs * ds) / ht;
         let size = ds.abs().max(dt.abs());
+        if !size.is_finite() {
+            break;
+        }
         if size > limit {
             (ds, dt) = (ds * limit / size, dt * limit / size);
         }
-        if !size.is_finite() || size < R::EPSILON {
+        (s, t) = (s + ds, t + dt);
+        if size < R::EPSILON.sqrt() * R::lit(1e-2) {
+            // Converged: the normal distance, which a slight overlap makes negative.
+            let ([x, ..], [y, _, _, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
+            let depth = dot(x - y, normal);
+            // An overlap may be deeper than the closest nodes are apart; the outline itself must confirm it then.
+            let crossed =
+                || encloses(&b.nodes, b.pose.unturned(x + origin - b.pose.origin)) == (b.record.sign < R::zero());
+            if depth.abs() <= best.2 * (R::one() + R::lit(1e-3)) || (depth < R::zero() && crossed()) {
+                best = (s, t, depth.abs(), if depth < R::zero() { -R::one() } else { R::one() });
+            }
             break;
         }
-        (s, t) = (s + ds, t + dt);
     }
-    best * sign
+    best
 }
 
 /// Which pairs are looked at: at least one moves.
@@ -129,7 +230,7 @@ fn pairs<'a, R: Real>(
 }
 
 /// A lower bound of the gap from enclosing circles (not for the tank).
-fn circles_apart<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
+pub(crate) fn apart<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
     if a.record.sign > R::zero() || b.record.sign > R::zero() {
         return -R::MAX;
     }
@@ -144,7 +245,7 @@ fn size<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
 pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Gap<R> {
     let mut best = Gap { distance: R::one() / R::zero(), between: None };
     for (i, j, a, b) in pairs(model, poses) {
-        if circles_apart(&a, &b) < best.distance {
+        if apart(&a, &b) < best.distance {
             let distance = signed_gap(&a, &b, model.store);
             if distance < best.distance {
                 best = Gap { distance, between: Some((model.place(i), model.place(j))) };
@@ -158,7 +259,7 @@ pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -
 pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place, R)> {
     pairs(model, poses).find_map(|(i, j, a, b)| {
         let limit = touching::<R>() * size(&a, &b);
-        if circles_apart(&a, &b) > limit {
+        if apart(&a, &b) > limit {
             return None;
         }
         let (square, _, _) = closest_nodes(&a, &b);
@@ -168,8 +269,8 @@ pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) 
             return None;
         }
         let gap = signed_gap(&a, &b, model.store);
-        let apart = gap > limit;
-        if apart { None } else { Some((model.place(i), model.place(j), gap)) }
+        let clear = gap > limit;
+        if clear { None } else { Some((model.place(i), model.place(j), gap)) }
     })
 }
 
@@ -231,7 +332,7 @@ pub(crate) fn swept_contact<'a, R: Real>(
         let (turn_a, turn_b) = (turn_of(a.record), turn_of(b.record));
         let travel = |p: Pose<R>, q: Pose<R>, turn: R, reach: R| cabs(q.origin - p.origin) + turn.abs() * reach;
         let length = travel(a.pose, a1, turn_a, a.record.reach) + travel(b.pose, b1, turn_b, b.record.reach);
-        if circles_apart(&a, &b) > length {
+        if apart(&a, &b) > length {
             continue;
         }
         let between = |p: Pose<R>, q: Pose<R>, turn: R, x: R| Pose {

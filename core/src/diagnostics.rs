@@ -3,12 +3,13 @@
 
 use crate::articulation::{put_three, twist_of};
 use crate::christoffel::{PairScratch, PassResult, pair_pass};
+use crate::configuration::{Configuration, Poses};
 pub use crate::contact::Gap;
 use crate::contact::smallest_gap;
 use crate::dynamics::joint_torque;
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::model::{Control, Formulation, Model};
-use crate::nystrom::Poses;
+use crate::near::Near;
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
@@ -16,7 +17,7 @@ use crate::scalar::Real;
 use crate::sim::Sim;
 use crate::status::{Error, Result, Status};
 pub use crate::work::Counters;
-use crate::work::{Work, flow, scratch, system};
+use crate::work::{Work, configuration, flow, scratch, system};
 use crate::workspace::{at, axpy, copy, part, put};
 
 /// Energies, J/m.
@@ -51,6 +52,7 @@ pub struct Resolution<R> {
 impl<R: Real> Work<'_, R> {
     /// Densities, adjoint and momentum of the motion placed last.
     pub(crate) fn prepare_motion(&mut self, model: &Model<'_, R>, counters: &mut Counters) -> Result<()> {
+        self.grade(model)?;
         self.fill_jacobian(model);
         self.solve_fluid(model, counters)?;
         self.solve_motion(model, true);
@@ -73,25 +75,25 @@ impl<R: Real> Work<'_, R> {
 
     /// `out = M^f e` per unit density for a world direction `e` of one coordinate; `transposed`: the other half.
     fn mass_column(&mut self, model: &Model<'_, R>, direction: usize, transposed: bool, out: &mut [R]) {
-        let poses = Poses(self.poses);
+        let c = &configuration!(self, model);
         out.fill(R::zero());
         put(out, direction, R::one());
-        to_link_frames(model, poses, out, self.v);
+        to_link_frames(c, out, self.v);
         let system = system!(self);
         if transposed {
-            fill_flux(model, self.v, self.solution);
+            fill_flux(c, self.v, self.solution);
             out.fill(R::zero());
-            add_potential_moments(model, self.solution, R::one(), out);
+            add_potential_moments(c, self.solution, R::one(), out);
             system.factors().solve_transposed(self.solution);
-            add_potential_moments(model, self.solution, -R::TWO, out);
+            add_potential_moments(c, self.solution, -R::TWO, out);
         } else {
             self.solution.fill(R::zero());
-            add_interior_potential(model, self.v, -R::TWO, self.solution);
+            add_interior_potential(c, self.v, -R::TWO, self.solution);
             system.factors().solve(self.solution);
-            add_interior_potential(model, self.v, R::one(), self.solution);
-            flux_moments(model, self.solution, out);
+            add_interior_potential(c, self.v, R::one(), self.solution);
+            flux_moments(c, self.solution, out);
         }
-        to_world(model, poses, R::one(), out);
+        to_world(c, R::one(), out);
     }
 }
 
@@ -110,7 +112,7 @@ impl<R: Real> Sim<'_, R> {
         let walls = self.model.head.plan.walls;
         for i in 0..self.model.links.len() {
             if let &[x, y, theta] = part(self.state.positions, 3 * i, 3) {
-                crate::nystrom::put_pose(poses, walls + i, &crate::se2::Pose::new(x, y, theta));
+                crate::configuration::put_pose(poses, walls + i, &crate::se2::Pose::new(x, y, theta));
             }
         }
         smallest_gap(&self.model, Poses(poses))
@@ -123,13 +125,13 @@ impl<R: Real> Sim<'_, R> {
     pub fn energy(&mut self) -> Result<Energy<R>> {
         self.refresh()?;
         let (model, head) = (self.model, self.model.head);
-        let poses = Poses(self.work.poses);
+        let c = &configuration!(self.work, &model);
         let kinetic_fluid =
             self.work.momentum.iter().zip(self.work.qd.iter()).fold(R::zero(), |s, (p, v)| s + *p * *v) * R::HALF;
         let kinetic_bodies = buoyancy::kinetic_bodies(&model, self.work.qd);
         let zero = R::zero();
-        let weight = if head.plan.gravity { buoyancy::energy(&model, poses, self.work.q) } else { zero };
-        let repulsion = head.repulsion.map_or(zero, |law| repulsion::energy(&model, poses, law));
+        let weight = if head.plan.gravity { buoyancy::energy(&model, c.poses, self.work.q) } else { zero };
+        let repulsion = head.repulsion.map_or(zero, |law| repulsion::energy(c, law));
         let circulation =
             if self.circulates() { circulation::energy(&flow!(self.work)) * head.fluid_density } else { zero };
         let work = if head.tracks_work { self.state.y.last().copied().unwrap_or(zero) } else { zero };
@@ -153,12 +155,12 @@ impl<R: Real> Sim<'_, R> {
             return Ok(total);
         }
         let (model, density) = (self.model, self.model.head.fluid_density);
-        let poses = Poses(self.work.poses);
+        let c = &configuration!(self.work, &model);
         if self.circulates() {
-            circulation::impulse(&model, poses, &flow!(self.work), self.work.spare);
+            circulation::impulse(c, &flow!(self.work), self.work.spare);
         } else {
             let [x, y, a] = model.head.lone_impulse;
-            put_three(self.work.spare, 0, poses.get(0).turned(crate::scalar::complex(x, y)), a);
+            put_three(self.work.spare, 0, c.pose(0).turned(crate::scalar::complex(x, y)), a);
         }
         for (_, b, _) in model.each_boundary() {
             let Some(link) = b.link else { continue };
@@ -321,7 +323,7 @@ impl<R: Real> Sim<'_, R> {
         self.refresh()?;
         out.fill(R::zero());
         if let Some(law) = self.model.head.repulsion {
-            repulsion::add_gradient(&self.model, Poses(self.work.poses), law, out);
+            repulsion::add_gradient(&configuration!(self.work, &self.model), law, out);
         }
         Ok(())
     }
@@ -338,7 +340,14 @@ impl<R: Real> Sim<'_, R> {
             let (model, w) = (self.model, &mut self.work);
             let (system, mut flow, mut scratch) = (system!(w), flow!(w), scratch!(w));
             let density = model.head.fluid_density;
-            circulation::add_energy_gradient(&model, Poses(w.poses), &system, &mut flow, &mut scratch, density, out);
+            circulation::add_energy_gradient(
+                &configuration!(w, &model),
+                &system,
+                &mut flow,
+                &mut scratch,
+                density,
+                out,
+            );
         }
         Ok(())
     }
@@ -385,12 +394,13 @@ impl<R: Real> Sim<'_, R> {
         w.christoffel_force(&model);
         let scale = largest(w.force);
         let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
-        pair_pass(&model, Poses(w.poses), w.qd, w.density, w.adjoint, &mut scratch!(w), out);
+        let c = &configuration!(w, &model);
+        pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
         let system = system!(w);
         system.factors().solve(w.rate);
         system.factors().solve_transposed(w.transposed);
-        flux_moments(&model, w.rate, w.force);
-        add_potential_moments(&model, w.transposed, R::TWO, w.force);
+        flux_moments(c, w.rate, w.force);
+        add_potential_moments(c, w.transposed, R::TWO, w.force);
         let difference = largest(w.force) * model.head.fluid_density;
         let force = if scale > zero { difference / scale } else { zero };
         // Mass: M_h against its transpose, column by column.
@@ -414,21 +424,20 @@ impl<R: Real> Sim<'_, R> {
 impl<R: Real> Work<'_, R> {
     /// −G e_k into `force` for the motion of one coordinate alone.
     fn gyroscopic_column(&mut self, model: &Model<'_, R>, k: usize) {
-        let poses = Poses(self.poses);
+        let c = &configuration!(self, model);
         self.force.fill(R::zero());
         self.qd.fill(R::zero());
         put(self.qd, k, R::one());
         if model.head.plan.formulation == Formulation::Kirchhoff {
-            crate::dynamics::add_lone_circulation(model, poses, self.qd, self.force);
+            crate::dynamics::add_lone_circulation(c, self.qd, self.force);
             return;
         }
-        to_link_frames(model, poses, self.qd, self.v);
-        fill_flux(model, self.v, self.adjoint);
+        to_link_frames(c, self.qd, self.v);
+        fill_flux(c, self.v, self.adjoint);
         let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
         system.factors().solve_transposed(self.adjoint);
         circulation::add_gyroscopic_force(
-            model,
-            poses,
+            c,
             &system,
             &mut flow,
             &mut scratch,

@@ -9,16 +9,17 @@
 
 use crate::articulation::{accelerations, project, put_three, twist_of, velocities};
 use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, pair_pass, without_turning};
+use crate::configuration::{Configuration, Poses};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::model::{Control, Formulation, Model};
-use crate::nystrom::Poses;
+use crate::near::Near;
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
 use crate::scalar::Real;
 use crate::scene::ForceFormula;
 use crate::status::{Result, Status};
-use crate::work::{Counters, Work, flow, lone_momentum, scratch, system};
+use crate::work::{Counters, Work, configuration, flow, lone_momentum, scratch, system};
 use crate::workspace::{add, at, axpy, copy, inner, part, put};
 
 impl<R: Real> Work<'_, R> {
@@ -26,9 +27,9 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn pass(&mut self, model: &Model<'_, R>) {
         self.gradient.fill(R::zero());
         if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
-            let poses = Poses(self.poses);
+            let c = &configuration!(self, model);
             let out = PassResult { rate: self.rate, transposed: self.transposed, gradient: self.gradient };
-            pair_pass(model, poses, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
+            pair_pass(c, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
             for g in self.gradient.iter_mut() {
                 *g *= model.head.fluid_density;
             }
@@ -39,7 +40,7 @@ impl<R: Real> Work<'_, R> {
     /// in world directions. One ordinary and one transposed solve.
     fn fluid_force(&mut self, model: &Model<'_, R>, w: Inertia) {
         let links = model.links.len();
-        let (poses, density) = (Poses(self.poses), model.head.fluid_density);
+        let (c, density) = (&configuration!(self, model), model.head.fluid_density);
         self.force.fill(R::zero());
         if !model.head.plan.fluid {
             return;
@@ -56,23 +57,23 @@ impl<R: Real> Work<'_, R> {
             copy(self.inertial, base);
         }
         if lone {
-            lone_momentum(model, poses, self.inertial, self.force);
+            lone_momentum(c, self.inertial, self.force);
             add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
             return;
         }
         if model.head.plan.unknowns == 0 {
             return;
         }
-        to_link_frames(model, poses, self.inertial, self.spare);
+        to_link_frames(c, self.inertial, self.spare);
         if exact {
             copy(self.solution, self.rate);
         } else {
             // (2.15): the part that multiplies b_a now; Σ ψ_a kernel = Xᵀ (kernel − 2 A⁻ᵀ kernel), of which the second
             // term rides on the solve below as l = 2 kernel.
             copy(self.solution, self.density);
-            add_interior_potential(model, self.v, R::one(), self.solution);
-            boundary_formula(model, self.solution, self.v, self.transposed, self.hx, self.force);
-            add_potential_moments(model, self.transposed, R::one(), self.force);
+            add_interior_potential(c, self.v, R::one(), self.solution);
+            boundary_formula(c, self.solution, self.v, self.transposed, self.hx, self.force);
+            add_potential_moments(c, self.transposed, R::one(), self.force);
             for l in self.transposed.iter_mut() {
                 *l *= R::TWO;
             }
@@ -80,18 +81,18 @@ impl<R: Real> Work<'_, R> {
         }
         let system = system!(self);
         // ½ T₂ + ½ M_hᵀ w = Xᵀ [½ B w − A⁻ᵀ (l + B w)]
-        fill_flux(model, self.spare, self.second);
-        add_potential_moments(model, self.second, R::HALF, self.force);
+        fill_flux(c, self.spare, self.second);
+        add_potential_moments(c, self.second, R::HALF, self.force);
         axpy(self.second, R::one(), self.transposed);
         system.factors().solve_transposed(self.second);
-        add_potential_moments(model, self.second, -R::one(), self.force);
+        add_potential_moments(c, self.second, -R::one(), self.force);
         // ½ T₁ + ½ M_h w = ½ Bᵀ [A⁻¹ (a − 2 X w) + X w]
-        add_interior_potential(model, self.spare, -R::TWO, self.solution);
+        add_interior_potential(c, self.spare, -R::TWO, self.solution);
         system.factors().solve(self.solution);
-        add_interior_potential(model, self.spare, R::one(), self.solution);
-        flux_moments(model, self.solution, self.inertial);
+        add_interior_potential(c, self.spare, R::one(), self.solution);
+        flux_moments(c, self.solution, self.inertial);
         axpy(self.force, R::HALF, self.inertial);
-        to_world(model, poses, density, self.force);
+        to_world(c, density, self.force);
         if exact {
             add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
         }
@@ -99,38 +100,37 @@ impl<R: Real> Work<'_, R> {
 
     /// Every force that comes neither from inertia nor from drives, into `outer`.
     fn outer_forces(&mut self, model: &Model<'_, R>) {
-        let poses = Poses(self.poses);
+        let c = &configuration!(self, model);
         self.outer.fill(R::zero());
         let head = model.head;
         if head.plan.gravity {
-            buoyancy::add_gradient(model, poses, self.outer);
+            buoyancy::add_gradient(model, c.poses, self.outer);
         }
         if let Some(law) = head.repulsion {
-            repulsion::add_gradient(model, poses, law, self.outer);
+            repulsion::add_gradient(c, law, self.outer);
         }
         self.add_circulation(model);
     }
 
     /// Adds ∂T_c/∂q − G q̇ to `outer`.
     fn add_circulation(&mut self, model: &Model<'_, R>) {
-        let (poses, head) = (Poses(self.poses), model.head);
+        let (c, head) = (&configuration!(self, model), model.head);
         if !head.plan.circulation {
             return;
         }
         let density = head.fluid_density;
         if head.plan.formulation == Formulation::Kirchhoff {
             if head.gyroscopic {
-                add_lone_circulation(model, poses, self.qd, self.outer);
+                add_lone_circulation(c, self.qd, self.outer);
             }
             return;
         }
         let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
-        circulation::solve(model, poses, &system, &mut flow);
-        circulation::add_energy_gradient(model, poses, &system, &mut flow, &mut scratch, density, self.outer);
+        circulation::solve(c, &system, &mut flow);
+        circulation::add_energy_gradient(c, &system, &mut flow, &mut scratch, density, self.outer);
         if head.gyroscopic {
             circulation::add_gyroscopic_force(
-                model,
-                poses,
+                c,
                 &system,
                 &mut flow,
                 &mut scratch,
@@ -165,6 +165,7 @@ impl<R: Real> Work<'_, R> {
     ) -> Result<()> {
         counters.evaluations += 1;
         self.place(model, t, p, dp)?;
+        self.grade(model)?;
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         self.fill_jacobian(model);
         self.solve_fluid(model, counters)?;
@@ -299,14 +300,14 @@ fn add_body_inertia<R: Real>(model: &Model<'_, R>, w: &[R], force: &mut [R]) {
 }
 
 /// −G q̇ of a lone body: its circulation impulse turns with it.
-pub(crate) fn add_lone_circulation<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], force: &mut [R]) {
-    let Some((body, _)) = model.boundary(0) else { return };
-    let [px, py, _] = model.head.lone_impulse;
-    let p = poses.get(0).turned(crate::scalar::complex(px, py));
+pub(crate) fn add_lone_circulation<R: Real>(c: &Configuration<'_, R>, qd: &[R], force: &mut [R]) {
+    let Some((body, _)) = c.boundary(0) else { return };
+    let [px, py, _] = c.model.head.lone_impulse;
+    let p = c.pose(0).turned(crate::scalar::complex(px, py));
     let v = twist_of(qd, 0);
     let linear = crate::scalar::perp(v.linear) * body.circulation - crate::scalar::perp(p) * v.angular;
     let angular = v.linear.im * p.re - v.linear.re * p.im;
     let f = twist_of(force, 0);
-    let density = model.head.fluid_density;
+    let density = c.model.head.fluid_density;
     put_three(force, 0, f.linear - linear * density, f.angular - angular * density);
 }

@@ -18,7 +18,7 @@ const RUNG: usize = 6;
 const HEAD: usize = 2;
 /// Full weight of a rung.
 const WEIGHT: f64 = 0.5;
-/// Largest scale at which a ladder still acts.
+/// Scale at which a permanent ladder has faded out, at most.
 pub const TOP: f64 = 1.5;
 
 /// A request for nodes around the parameter `t`, down to the scale `beta` (both in the parameter).
@@ -28,7 +28,7 @@ pub struct Ladder<R> {
     pub t: R,
     /// Smallest scale to resolve.
     pub beta: R,
-    /// Scale at which the ladder has faded out, at most [`TOP`].
+    /// Scale at which the ladder has faded out.
     pub top: R,
 }
 
@@ -38,7 +38,7 @@ impl<R: Real> Ladder<R> {
     fn rungs(self) -> impl Iterator<Item = (R, R)> {
         // Below this scale neighbouring nodes would not be distinct numbers.
         let beta = self.beta.max(R::EPSILON * R::lit(128.0));
-        let (three, top) = (R::lit(3.0), self.top.min(R::lit(TOP)));
+        let (three, top) = (R::lit(3.0), self.top);
         core::iter::successors(Some(beta), move |b| Some(*b * three)).take_while(move |b| *b < top).enumerate().map(
             move |(m, b)| {
                 let first = if m == 0 { R::lit(1.5) } else { R::one() };
@@ -63,13 +63,25 @@ pub fn grading_len(rungs: usize) -> Option<usize> {
 /// Rungs that ask for the same thing share one weight; the result does not depend on the ladders' order
 /// (up to rounding). Cost: quadratic in the number of rungs. Errors: `MemoryTooSmall`.
 pub fn write_grading<R: Real>(ladders: impl Iterator<Item = Ladder<R>>, store: &mut [R]) -> Result<usize> {
+    match write_fitting(ladders, store) {
+        Ok((count, true)) => Ok(count),
+        _ => Err(Status::MemoryTooSmall.into()),
+    }
+}
+
+/// [`write_grading`] of as many rungs as there is memory for; also returns whether that was all.
+pub(crate) fn write_fitting<R: Real>(
+    ladders: impl Iterator<Item = Ladder<R>>,
+    store: &mut [R],
+) -> Result<(usize, bool)> {
     let (head, body) = store.split_at_mut_checked(HEAD).ok_or(Status::MemoryTooSmall)?;
     let mut free = body.chunks_exact_mut(RUNG);
-    let mut count = 0;
+    let (mut count, mut all) = (0, true);
     for ladder in ladders {
         for (b, weight) in ladder.rungs() {
             let Some([t, scale, _, raw, log, _]) = free.next() else {
-                return Err(Status::MemoryTooSmall.into());
+                all = false;
+                break;
             };
             (*t, *scale, *raw, *log) = (ladder.t, b, weight, b.ln());
             count += 1;
@@ -108,7 +120,7 @@ pub fn write_grading<R: Real>(ladders: impl Iterator<Item = Ladder<R>>, store: &
     }
     let origin = Grading::read(store, count).jet(R::zero())[0];
     put(store, 1, origin);
-    Ok(count)
+    Ok((count, all))
 }
 
 /// The map t → s of an outline, s(0) = 0, s(t + 2π) = s(t) + 2π.
@@ -129,6 +141,11 @@ impl<'a, R: Real> Grading<'a, R> {
     pub fn read(store: &'a [R], rungs: usize) -> Self {
         let len = rungs.saturating_mul(RUNG);
         Grading { plain: at(store, 0), origin: at(store, 1), rungs: part(store, HEAD, len) }
+    }
+
+    /// Weight of the plain parameter: the least slope the map can have.
+    pub fn plain(&self) -> R {
+        self.plain
     }
 
     /// Number of rungs.
@@ -156,11 +173,11 @@ impl<'a, R: Real> Grading<'a, R> {
         sum
     }
 
-    /// s′ at a complex parameter.
-    pub fn slope(&self, t: Complex<R>) -> Complex<R> {
+    /// s′ at the complex parameter t + u; the offset from a rung is formed first, so that no digits of a small u are lost.
+    pub fn slope(&self, t: R, u: Complex<R>) -> Complex<R> {
         let mut sum = complex(self.plain, R::zero());
         for [place, _, weight, _, sh, half_sinh] in self.each() {
-            let (s, _) = csin_cos((t - place) * R::HALF);
+            let (s, _) = csin_cos((u + (t - place)) * R::HALF);
             sum += complex(weight * half_sinh, R::zero()) / (s * s + sh * sh);
         }
         sum
@@ -177,7 +194,7 @@ impl<'a, R: Real> Grading<'a, R> {
             let ratio = cexp(z) / cexpm1(z);
             let log = |small: Complex<R>, from: Complex<R>, by: Complex<R>| {
                 let far = cabs(small) > R::HALF;
-                if far { cln(cexpm1(from + by) / cexpm1(from)) } else { cln_1p(small) }
+                if far { cln(-cexpm1(from + by)) - cln(-cexpm1(from)) } else { cln_1p(small) }
             };
             let turn = log(ratio * forth, z, iu) - log(ratio.conj() * back, z.conj(), -iu);
             sum += (u + complex(-turn.im, turn.re)) * weight;
@@ -293,12 +310,12 @@ mod tests {
                 for j in 0..n {
                     let z = cis(f64::TAU * (j as f64 + 0.5) / n as f64);
                     first += grading.difference(t, z * radius) / (z * radius * n as f64);
-                    second += grading.slope(z * radius + t) / (z * radius * n as f64);
+                    second += grading.slope(t, z * radius) / (z * radius * n as f64);
                 }
                 let rounding = 1e-13 + 4e-15 / radius;
                 assert!(cabs(first - slope) <= rounding * slope, "{t} {first} {slope}");
                 assert!(cabs(second - bend) <= rounding * (bend.abs() + slope / radius), "{t} {second} {bend}");
-                assert!(cabs(grading.slope(complex(t, 0.0)) - slope) <= 1e-13 * slope);
+                assert!(cabs(grading.slope(t, Complex::default()) - slope) <= 1e-13 * slope);
             }
         }
     }

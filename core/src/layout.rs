@@ -1,9 +1,11 @@
 //! What a scene requires and where everything goes in a model's store: the same lines count and place.
 
-use crate::boundary::BoundaryRecord;
+use crate::boundary::{BoundaryRecord, modes_len, potential_scratch};
+use crate::grading::grading_len;
 use crate::model::Formulation;
+use crate::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
 use crate::scalar::Real;
-use crate::scene::{Description, Drive, Link, Mass, Root, Shape, Signal};
+use crate::scene::{Description, Drive, Link, Mass, Quadrature, Root, Shape, Signal};
 use crate::se2::Pose;
 use crate::status::{Error, Place, Result, Status};
 
@@ -86,6 +88,14 @@ pub(crate) struct Slots {
     pub(crate) regular_at: usize,
     pub(crate) first: usize,
     pub(crate) shared: Option<usize>,
+    pub(crate) ladders_at: usize,
+    pub(crate) tips_at: usize,
+    pub(crate) modes_at: usize,
+    pub(crate) modes: usize,
+    pub(crate) table_at: usize,
+    pub(crate) table_len: usize,
+    pub(crate) rungs_at: usize,
+    pub(crate) rungs_len: usize,
 }
 
 /// Offsets of everything else, and the total.
@@ -99,6 +109,8 @@ pub(crate) struct Layout {
     pub(crate) reals: usize,
     pub(crate) wall_nodes: usize,
     pub(crate) unknowns: usize,
+    /// Reals of the rungs of a configuration.
+    pub(crate) rungs: usize,
 }
 
 fn sum(a: usize, b: usize) -> Result<usize> {
@@ -118,6 +130,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
     let (mut layout, mut at, mut scratch) = (Layout::default(), 0, 0);
     let fluid = traits.fluid;
     let general = fluid && traits.formulation != Formulation::Kirchhoff;
+    let walls = wall_count(scene);
     for (i, item) in items(scene).enumerate() {
         let same = |j: &(usize, Item<'_, R>)| {
             j.1.link.is_some()
@@ -132,10 +145,41 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
         if item.link.is_none() {
             layout.wall_nodes = sum(layout.wall_nodes, item.nodes)?;
         }
+        if traits.graded {
+            let here = |e: Error| e.at(item.place);
+            let own = item.shape.store_len().map_err(here)?;
+            let walls = if item.link.is_none() { 2 } else { 1 };
+            // The shape's store holds at least its permanent rungs.
+            let len = grading_len(walls * rung_allowance(item.nodes))
+                .and_then(|n| n.checked_add(own))
+                .ok_or(Status::SizeOverflow)?;
+            (s.rungs_at, s.rungs_len) = (layout.rungs, len);
+            layout.rungs = sum(layout.rungs, len)?;
+        }
         if s.shared.is_none() {
             let here = |e: Error| e.at(item.place);
             s.store_len = item.shape.store_len().map_err(here)?;
+            if traits.graded {
+                let (mut ladders, tips) = item.shape.ladder_counts().map_err(here)?;
+                if item.link.is_none() && walls > 1 {
+                    // Ladders that walls cause on each other are permanent.
+                    ladders = sum(ladders, MOST_LADDERS)?;
+                    let rungs = grading_len(rung_allowance(item.nodes)).ok_or(Status::SizeOverflow)?;
+                    s.store_len = sum(s.store_len, rungs)?;
+                }
+                (s.ladders_at, at) = (at, sum(at, ladders.saturating_mul(3))?);
+                (s.tips_at, at) = (at, sum(at, tips)?);
+            }
             (s.store_at, at) = (at, sum(at, s.store_len)?);
+            if traits.tables {
+                s.table_len = pole::table_len(item.nodes).ok_or(Status::SizeOverflow)?;
+                (s.table_at, at) = (at, sum(at, s.table_len)?);
+            }
+            let closed = matches!(item.shape, Shape::Ellipse { .. });
+            if traits.graded && fluid && item.link.is_some() && !closed {
+                s.modes = modes_len(item.nodes).ok_or(Status::SizeOverflow)?;
+                (s.modes_at, at) = (at, sum(at, s.modes)?);
+            }
             let with_chi = item.link.is_some();
             let data = BoundaryRecord::<R>::data_len(item.nodes, with_chi).ok_or(Status::SizeOverflow)?;
             (s.data_at, at) = (at, sum(at, data)?);
@@ -146,11 +190,14 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
                 }
             }
             scratch = scratch.max(item.shape.scratch_len().map_err(here)?);
-            if fluid && item.link.is_some() && !matches!(item.shape, Shape::Ellipse { .. }) {
-                scratch = scratch.max(sum(square(item.nodes)?, 2 * item.nodes)?);
+            if fluid && item.link.is_some() && !closed {
+                scratch = scratch.max(potential_scratch(s.modes, item.nodes).ok_or(Status::SizeOverflow)?);
             }
         }
         slot(i, s);
+    }
+    if traits.graded && walls > 1 {
+        scratch = scratch.max(walls.checked_mul(LADDER_LIST).ok_or(Status::SizeOverflow)?);
     }
     if fluid {
         (layout.walls_at, at) = (at, sum(at, square(layout.wall_nodes)?)?);
@@ -176,6 +223,10 @@ pub(crate) struct Traits {
     pub(crate) fluid: bool,
     pub(crate) circulation: bool,
     pub(crate) formulation: Formulation,
+    /// Nodes follow the configuration.
+    pub(crate) graded: bool,
+    /// Pole terms are used: also by a lone thin body.
+    pub(crate) tables: bool,
 }
 
 impl Traits {
@@ -196,6 +247,9 @@ impl Traits {
         } else {
             Formulation::Velocity
         };
-        Traits { fluid, circulation, formulation }
+        let repels = settings.repulsion.is_some_and(|r| r.epsilon != R::zero());
+        let tables = settings.quadrature == Quadrature::Graded && (fluid || repels);
+        let graded = tables && wall_count(scene) + links > 1;
+        Traits { fluid, circulation, formulation, graded, tables }
     }
 }

@@ -39,12 +39,15 @@
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 pub(crate) mod articulation;
 pub mod boundary;
 mod build;
 pub(crate) mod christoffel;
 pub mod compile;
+pub(crate) mod configuration;
 pub(crate) mod contact;
 pub mod curve;
 pub mod diagnostics;
@@ -53,11 +56,11 @@ pub(crate) mod forces;
 pub mod grading;
 pub mod integrate;
 mod layout;
+pub(crate) mod ldl;
 pub(crate) mod lone;
 pub mod lu;
-#[cfg(feature = "faer")]
-mod lu_faer;
 pub mod model;
+pub(crate) mod near;
 pub(crate) mod nystrom;
 #[cfg(all(test, feature = "alloc"))]
 mod nystrom_test;
@@ -83,5 +86,5 @@ pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
 pub use owned::{ModelBuf, SimBuf};
 pub use plan::Plan;
 pub use scalar::Real;
-pub use sim::{Method, Sim, SimHead, SimRequirement};
+pub use sim::{Method, STEP_LIMIT, Sim, SimHead, SimRequirement, TimeError};
 pub use status::{Error, Place, Result, Status};

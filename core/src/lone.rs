@@ -1,7 +1,7 @@
 //! A lone rigid body: its added mass and the impulse of its circulation are constant in its own frame, so they are
 //! computed once and no boundary system is solved while stepping (Kirchhoff's equations).
 
-use crate::boundary::{BoundaryRecord, fill_self_block};
+use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
 use crate::lu::{Factors, factor};
 use crate::scalar::{Complex, Real, cln, complex, dot};
 use crate::status::{Result, Status};
@@ -31,7 +31,10 @@ pub(crate) fn constants<R: Real>(
     let pivots = take(&mut rest, n)?;
     let regular = if circulation { take(&mut rest, n * n)? } else { &mut [] };
     let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
-    fill_self_block(body, store, block, regular)?;
+    let source = body.source(store);
+    let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut *regular, ld: n, at: 0 });
+    fill_self_block(&source.nodes, body.sign, R::zero(), &mut a, &mut g);
+    add_flank_terms(&source, body.sign, &mut a, &mut g);
     let potential = |k: usize| [at(nodes.x, k), at(nodes.y, k), at(nodes.chi, k)];
     // The circulatory flow: on an ellipse or disc its stream function is constant and its potential 0.
     let point = circulation && body.core.axes[0] == R::zero();

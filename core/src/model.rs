@@ -10,7 +10,6 @@ use crate::scalar::{Complex, Real};
 use crate::scene::{ForceFormula, Repulsion};
 use crate::signal::SignalRecord;
 use crate::status::{Place, Status};
-use crate::workspace::part;
 
 /// One rigid link.
 #[derive(Clone, Copy, Debug, Default)]
@@ -100,6 +99,15 @@ pub struct CoordinateRecord<R> {
     pub start: [R; 2],
 }
 
+/// Sizes of what near contact needs in a simulation; 0 where it needs nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct NearDims {
+    /// Nodes of all boundaries.
+    pub nodes: usize,
+    /// Reals of all rungs.
+    pub rungs: usize,
+}
+
 /// Everything of a model that has a fixed size.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelHead<R> {
@@ -113,6 +121,7 @@ pub struct ModelHead<R> {
     pub(crate) walls_at: usize,
     pub(crate) walls_regular_at: usize,
     pub(crate) channels: usize,
+    pub(crate) near: NearDims,
     pub(crate) tracks_work: bool,
     pub(crate) prescribed_moves: bool,
     /// Lone body: added mass (without mass) and flux impulse of its circulation, per unit density, body frame.
@@ -206,7 +215,7 @@ impl<'a, R: Real> Model<'a, R> {
     /// origin, walls in the world. `None` if there is no such boundary.
     pub fn outline_point(&self, place: Place, t: R) -> Option<[R; 2]> {
         let b = self.boundaries.iter().find(|b| b.place == place)?;
-        let x = b.outline.view(part(self.store, b.store_at, b.store_len)).curve.jet_real(t)[0] - b.origin;
+        let x = b.view(self.store).curve.jet_real(t)[0] - b.origin;
         let x = if b.link.is_none() { b.pose.place(x) } else { x };
         Some([x.re, x.im])
     }

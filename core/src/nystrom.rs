@@ -5,50 +5,16 @@
 //! tank's nodes to 0. Blocks of a boundary with itself and of walls with walls come ready from the model; only
 //! blocks between different boundaries of which one moves are computed: one division per pair of nodes.
 
-use crate::boundary::{BoundaryRecord, Nodes, self_weights};
-use crate::model::{Model, ModelHead};
+use crate::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_term, fill_self_block};
+use crate::configuration::{Configuration, fill_targets, targets};
+use crate::model::ModelHead;
+use crate::near::pole;
 use crate::scalar::{Complex, Real, complex};
-use crate::se2::Pose;
 use crate::workspace::{copy, part, part_mut, put};
 
-/// Placements of all boundaries, kept as four reals each.
-#[derive(Clone, Copy)]
-pub(crate) struct Poses<'a, R>(pub &'a [R]);
-
-impl<R: Real> Poses<'_, R> {
-    #[inline]
-    pub(crate) fn get(&self, boundary: usize) -> Pose<R> {
-        match part(self.0, 4 * boundary, 4) {
-            &[x, y, c, s] => Pose { origin: complex(x, y), turn: complex(c, s) },
-            _ => Pose::default(),
-        }
-    }
-}
-
-/// Writes a placement.
-pub(crate) fn put_pose<R: Real>(poses: &mut [R], boundary: usize, pose: &Pose<R>) {
-    let values = [pose.origin.re, pose.origin.im, pose.turn.re, pose.turn.im];
-    copy(part_mut(poses, 4 * boundary, 4), &values);
-}
-
-/// Nodes of one boundary in another's frame: z = conj(turn_j)(r_i − r_j + turn_i X). Differences of origins are
-/// taken first, so a scene far from the world's origin loses no digits.
-#[inline]
-pub(crate) fn targets<'a, R: Real>(
-    nodes: &'a Nodes<'a, R>,
-    pose: Pose<R>,
-    source: Pose<R>,
-) -> impl Iterator<Item = Complex<R>> + 'a {
-    let turn = source.unturned(pose.turn);
-    let shift = source.unturned(pose.origin - source.origin);
-    nodes.points().map(move |x| shift + turn * x)
-}
-
-/// Writes the nodes of one boundary in another's frame.
-pub(crate) fn fill_targets<R: Real>(nodes: &Nodes<'_, R>, pose: Pose<R>, source: Pose<R>, zx: &mut [R], zy: &mut [R]) {
-    for ((x, y), z) in zx.iter_mut().zip(zy).zip(targets(nodes, pose, source)) {
-        (*x, *y) = (z.re, z.im);
-    }
+/// 1/N_T in every entry of the tank's own block.
+fn completion<R: Real>(b: &BoundaryRecord<R>) -> R {
+    if b.sign > R::zero() { R::one() / R::count(b.nodes.max(1)) } else { R::zero() }
 }
 
 /// Fills the constant block of the walls (and of Re G) in the store.
@@ -62,27 +28,31 @@ pub(crate) fn fill_walls<R: Real>(
     let Some((data, blocks)) = store.split_at_mut_checked(head.walls_at) else { return };
     let Some((block, rest)) = blocks.split_at_mut_checked(n * n) else { return };
     let regular: &mut [R] = if circulation { part_mut(rest, 0, n * n) } else { &mut [] };
-    for source in walls {
-        let factor = source.sign / R::PI;
-        let sources = source.nodes(data);
+    for b in walls {
+        let source = b.source(data);
+        let factor = b.sign / R::PI;
         for target in walls {
-            if target.first == source.first {
-                let completion =
-                    if source.sign > R::zero() { R::one() / R::count(source.nodes.max(1)) } else { R::zero() };
-                // The outline was checked when its nodes were made: the weights exist.
-                let _ = self_weights(source, data, |i, k, im, re| {
-                    let at = (source.first + k) * n + source.first + i;
-                    put(block, at, if i == k { R::one() } else { R::zero() } - factor * im + completion);
-                    put(regular, at, factor * re);
-                });
+            let at = b.first * n + target.first;
+            let (mut a, mut g) = (Block { data: &mut *block, ld: n, at }, Block { data: &mut *regular, ld: n, at });
+            if target.first == b.first {
+                fill_self_block(&source.nodes, b.sign, completion(b), &mut a, &mut g);
+                add_flank_terms(&source, b.sign, &mut a, &mut g);
                 continue;
             }
-            for (k, (g, dg)) in sources.points().zip(sources.tangents()).enumerate() {
-                for (i, z) in targets(&target.nodes(data), target.pose, source.pose).enumerate() {
-                    let w = dg / (g - z) * (sources.step * factor);
-                    let at = (source.first + k) * n + target.first + i;
-                    put(block, at, -w.im);
-                    put(regular, at, w.re);
+            let points = target.nodes(data);
+            for (k, (x, dx)) in source.nodes.points().zip(source.nodes.tangents()).enumerate() {
+                for (i, z) in targets(&points, target.pose, b.pose).enumerate() {
+                    let w = dx / (x - z) * (source.nodes.step * factor);
+                    put(a.data, at + k * n + i, -w.im);
+                    put(g.data, at + k * n + i, w.re);
+                }
+            }
+            if source.table.is_empty() {
+                continue;
+            }
+            for (i, z) in targets(&points, target.pose, b.pose).enumerate() {
+                for p in source.preimages(z, None).iter().flatten() {
+                    add_pole_term(p, source.table, b.nodes, b.sign, i, &mut a, &mut g);
                 }
             }
         }
@@ -92,50 +62,96 @@ pub(crate) fn fill_walls<R: Real>(
 /// Assembles A (leading dimension `ld`) and, if `regular` is not empty, Re G (leading dimension N).
 /// `zx`, `zy` are scratch of length N. O(N²).
 pub(crate) fn assemble<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     matrix: &mut [R],
     ld: usize,
     regular: &mut [R],
     zx: &mut [R],
     zy: &mut [R],
 ) {
-    let (n, walls) = (zx.len(), model.head.wall_nodes);
-    let with_regular = !regular.is_empty();
-    for (j, source, nodes) in model.each_boundary() {
-        for (i, target, points) in
-            model.each_boundary().filter(|(i, t, _)| *i != j && (t.link.is_some() || source.link.is_some()))
-        {
+    let (n, walls) = (zx.len(), c.model.head.wall_nodes);
+    let store = c.model.store;
+    let walls_anew = c.walls_regraded();
+    for (j, source, nodes) in c.each_boundary() {
+        let ready_walls = source.link.is_none() && !walls_anew;
+        for (i, target, points) in c.each_boundary().filter(|(i, t, _)| *i != j && !(ready_walls && t.link.is_none())) {
             let (zx, zy) = (part_mut(zx, target.first, target.nodes), part_mut(zy, target.first, target.nodes));
-            fill_targets(&points, poses.get(i), poses.get(j), zx, zy);
+            fill_targets(&points, c.pose(i), c.pose(j), zx, zy);
         }
         let factor = nodes.step * source.sign / R::PI;
-        // Rows that come ready: the walls' for a wall, its own for a link.
-        let (ready, ready_len) = if source.link.is_some() { (source.first, source.nodes) } else { (0, walls) };
-        for (k, (g, dg)) in nodes.points().zip(nodes.tangents()).enumerate() {
-            let (column, weight) = (source.first + k, dg * factor);
-            let block = match source.link {
-                Some(_) => part(model.store, source.self_at + k * ready_len, ready_len),
-                None => part(model.store, model.head.walls_at + column * walls, walls),
+        // Rows that come otherwise: the walls' for a wall, its own for a link; ready made, or from nodes of their own.
+        let (ready, ready_len) = if ready_walls { (0, walls) } else { (source.first, source.nodes) };
+        let anew = if source.link.is_some() { c.regraded(j) } else { walls_anew };
+        let own_at = source.first * ld + source.first;
+        let (mut a, mut g) = (
+            Block { data: &mut *matrix, ld, at: own_at },
+            Block { data: &mut *regular, ld: n, at: source.first * (n + 1) },
+        );
+        if anew {
+            fill_self_block(&nodes, source.sign, completion(source), &mut a, &mut g);
+        }
+        for (k, (x, dx)) in nodes.points().zip(nodes.tangents()).enumerate() {
+            let (column, weight) = (source.first + k, dx * factor);
+            let ready_at = |links: usize, walls_at: usize| match source.link {
+                Some(_) => links + k * ready_len,
+                None => walls_at + column * walls,
             };
             let entries = part_mut(matrix, column * ld, n);
-            copy(part_mut(entries, ready, ready_len), block);
-            for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
-                kernel_column(part(zx, from, len), part(zy, from, len), g, weight, part_mut(entries, from, len));
+            if !anew {
+                let from = ready_at(source.self_at, c.model.head.walls_at);
+                copy(part_mut(entries, ready, ready_len), part(store, from, ready_len));
             }
-            if with_regular {
-                let block = match source.link {
-                    Some(_) => part(model.store, source.regular_at + k * ready_len, ready_len),
-                    None => part(model.store, model.head.walls_regular_at + column * walls, walls),
-                };
-                let entries = part_mut(regular, column * n, n);
-                copy(part_mut(entries, ready, ready_len), block);
-                for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
-                    // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
-                    let turned = complex(weight.im, -weight.re);
-                    kernel_column(part(zx, from, len), part(zy, from, len), g, turned, part_mut(entries, from, len));
+            for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
+                kernel_column(part(zx, from, len), part(zy, from, len), x, weight, part_mut(entries, from, len));
+            }
+            if regular.is_empty() {
+                continue;
+            }
+            let entries = part_mut(regular, column * n, n);
+            if !anew {
+                let from = ready_at(source.regular_at, c.model.head.walls_regular_at);
+                copy(part_mut(entries, ready, ready_len), part(store, from, ready_len));
+            }
+            for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
+                // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
+                let turned = complex(weight.im, -weight.re);
+                kernel_column(part(zx, from, len), part(zy, from, len), x, turned, part_mut(entries, from, len));
+            }
+        }
+        if !source.table(store).is_empty() {
+            let (mut a, mut g) = (
+                Block { data: &mut *matrix, ld, at: source.first * ld },
+                Block { data: &mut *regular, ld: n, at: source.first * n },
+            );
+            for row in 0..n {
+                for p in c.preimages(j, row) {
+                    add_pole_term(&p, source.table(store), source.nodes, source.sign, row, &mut a, &mut g);
                 }
             }
+        }
+    }
+}
+
+/// Adds the pole terms of D to what the plain rule gives: h_i += Σ_k D_ik w_k at the targets of one boundary and, where
+/// `f` and `out` are not empty, Im Σ_i f_i D_ik to `out_k`.
+pub(crate) fn add_pole_velocity<R: Real>(
+    c: &Configuration<'_, R>,
+    (j, source): (usize, &BoundaryRecord<R>),
+    first: usize,
+    [wx, wy]: [&[R]; 2],
+    [fx, fy]: [&[R]; 2],
+    [hx, hy]: [&mut [R]; 2],
+    out: &mut [R],
+) {
+    let table = source.table(c.model.store);
+    if table.is_empty() {
+        return;
+    }
+    for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
+        for p in c.preimages(j, first + i) {
+            let f = complex(fx.get(i).copied().unwrap_or(R::zero()), fy.get(i).copied().unwrap_or(R::zero()));
+            let h = pole::slope_products(&p, table, source.nodes, wx, wy, f, source.sign / R::PI, out);
+            (*hx, *hy) = (*hx + h.re, *hy + h.im);
         }
     }
 }

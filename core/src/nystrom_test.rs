@@ -2,15 +2,18 @@
 
 #![allow(clippy::indexing_slicing)]
 extern crate std;
-use crate::boundary::{BoundaryRecord, fill_nodes, self_weights};
+use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_nodes, fill_self_block};
+use crate::configuration::{Configuration, Poses};
 use crate::lu::{Factors, factor};
-use crate::model::Model;
-use crate::nystrom::{Poses, assemble, put_pose};
-use crate::owned::ModelBuf;
+use crate::near::{Near, pole};
+use crate::nystrom::assemble;
+use crate::owned::{ModelBuf, SimBuf};
 use crate::potentials::{add_interior_potential, fill_flux};
 use crate::scalar::{Complex, Real, cabs, complex};
-use crate::scene::{Body, Link, Mass, Root, Scene, Shape, Wall};
-use crate::se2::Pose;
+use crate::scene::{Body, Link, Mass, Quadrature, Root, Scene, Shape, Wall};
+use crate::sim::{Method, Sim};
+use crate::work::configuration;
+use std::sync::Arc;
 use std::vec;
 use std::vec::Vec;
 
@@ -28,17 +31,37 @@ type Rows = Vec<Vec<f64>>;
 
 /// Re W and Im W of an outline with itself, row by row, and its nodes.
 fn self_block(shape: &Shape<'_, f64>, nodes: usize) -> (Rows, Rows, Vec<Complex<f64>>) {
-    let mut store = vec![0.0; shape.store_len().unwrap() + BoundaryRecord::<f64>::data_len(nodes, true).unwrap()];
+    let (store_len, table_len) = (shape.store_len().unwrap(), pole::table_len(nodes).unwrap());
+    let mut store = vec![0.0; store_len + table_len + BoundaryRecord::<f64>::data_len(nodes, true).unwrap()];
     let mut scratch = vec![0.0; shape.scratch_len().unwrap()];
-    let store_len = shape.store_len().unwrap();
     let (outline, _) = shape.compile(&mut store[..store_len], &mut scratch).unwrap();
-    let mut record =
-        BoundaryRecord { nodes, outline, store_len, data_at: store_len, link: Some(0), ..Default::default() };
+    let data_at = store_len + table_len;
+    let mut record = BoundaryRecord {
+        nodes,
+        outline,
+        store_len,
+        table_at: store_len,
+        table_len,
+        data_at,
+        link: Some(0),
+        ..Default::default()
+    };
     fill_nodes(&mut record, &mut store).unwrap();
-    let (mut re, mut im) = (vec![vec![0.0; nodes]; nodes], vec![vec![0.0; nodes]; nodes]);
-    self_weights(&record, &store, |i, k, y, x| (re[i][k], im[i][k]) = (x, y)).unwrap();
-    let points = record.nodes(&store).points().collect();
-    (re, im, points)
+    // With sign +1: A = 1 − Im W/π.
+    let (mut a, mut g) = (vec![0.0; nodes * nodes], vec![0.0; nodes * nodes]);
+    let source = record.source(&store);
+    let (mut matrix, mut regular) =
+        (Block { data: &mut a, ld: nodes, at: 0 }, Block { data: &mut g, ld: nodes, at: 0 });
+    fill_self_block(&source.nodes, 1.0, 0.0, &mut matrix, &mut regular);
+    add_flank_terms(&source, 1.0, &mut matrix, &mut regular);
+    let pi = core::f64::consts::PI;
+    let rows = |f: &dyn Fn(usize, usize) -> f64| -> Rows {
+        (0..nodes).map(|i| (0..nodes).map(|k| f(i, k)).collect()).collect()
+    };
+    let one = |i, k| if i == k { 1.0 } else { 0.0 };
+    let re = rows(&|i, k| g[k * nodes + i] * pi);
+    let im = rows(&|i, k| (one(i, k) - a[k * nodes + i]) * pi);
+    (re, im, record.nodes(&store).points().collect())
 }
 
 fn apply(rows: &[Vec<f64>], f: &[f64]) -> Vec<f64> {
@@ -98,7 +121,7 @@ struct Node {
 
 /// A boundary system in the world.
 struct Assembled {
-    model: ModelBuf<f64>,
+    sim: SimBuf<f64>,
     /// A and Re G, column-major.
     matrix: Vec<f64>,
     regular: Vec<f64>,
@@ -107,7 +130,7 @@ struct Assembled {
 
 const POSES: [[f64; 3]; 2] = [[-1.2, 0.3, 0.4], [1.1, -0.6, 1.0]];
 
-fn assembled(in_tank: bool) -> Assembled {
+fn assembled(in_tank: bool, quadrature: Quadrature) -> Assembled {
     let wall = |shape, position, nodes| Wall { shape, position, angle: 0.3, nodes, circulation: 0.0 };
     let obstacles = [wall(Shape::Star { radius: 0.5, amplitude: 0.15, lobes: 2 }, [0.1, 1.6], 160)];
     let tank = wall(Shape::Ellipse { a: 4.0, b: 3.2 }, [0.1, 0.2], 192);
@@ -123,28 +146,33 @@ fn assembled(in_tank: bool) -> Assembled {
     let body = |k: usize| Body { pose: POSES[k], velocity: [0.0; 3], root: Root::Free, links: &links[k] };
     let bodies = [body(0), body(1)];
     let tank = if in_tank { Some(tank) } else { None };
-    let scene = Scene { tank, obstacles: &obstacles, bodies: &bodies, ..Scene::new(1.0, 0.0) };
-    let model = ModelBuf::new(&scene).unwrap();
-    let view = model.view();
-    let n = view.head.plan.unknowns;
-    let mut poses = vec![0.0; 4 * view.boundaries.len()];
+    let scene = Scene { tank, obstacles: &obstacles, bodies: &bodies, quadrature, ..Scene::new(1.0, 0.0) };
+    let model = Arc::new(ModelBuf::new(&scene).unwrap());
+    let mut sim = SimBuf::new(model, Method::Rk4 { step: 0.1 }).unwrap();
+    let mut view = sim.view();
+    let n = view.model.head.plan.unknowns;
     let mut nodes = Vec::new();
-    for (i, b, data) in view.each_boundary() {
-        let pose = match b.link {
-            Some(k) => Pose::new(POSES[k][0], POSES[k][1], POSES[k][2]),
-            None => b.pose,
-        };
-        put_pose(&mut poses, i, &pose);
-        for (x, d) in data.points().zip(data.tangents()) {
-            let (point, tangent) = (pose.place(x), pose.turned(d) * data.step);
-            nodes.push(Node { point, tangent, sign: b.sign, first: b.first, count: b.nodes });
-        }
-    }
     let (mut matrix, mut regular) = (vec![0.0; n * n], vec![0.0; n * n]);
     let (mut zx, mut zy) = (vec![0.0; n], vec![0.0; n]);
-    assemble(&view, Poses(&poses), &mut matrix, n, &mut regular, &mut zx, &mut zy);
-    Assembled { model, matrix, regular, nodes }
+    at_rest(&mut view, |c| {
+        for (i, b, data) in c.each_boundary() {
+            for (x, d) in data.points().zip(data.tangents()) {
+                let (point, tangent) = (c.pose(i).place(x), c.pose(i).turned(d) * data.step);
+                nodes.push(Node { point, tangent, sign: b.sign, first: b.first, count: b.nodes });
+            }
+        }
+        assemble(c, &mut matrix, n, &mut regular, &mut zx, &mut zy);
+    });
+    Assembled { sim, matrix, regular, nodes }
 }
+
+/// What an evaluation sees of the state shown.
+fn at_rest<T>(sim: &mut Sim<'_, f64>, then: impl FnOnce(&Configuration<'_, f64>) -> T) -> T {
+    sim.refresh().unwrap();
+    then(&configuration!(sim.work, &sim.model))
+}
+
+const BOTH: [Quadrature; 2] = [Quadrature::Graded, Quadrature::Plain];
 
 fn product(columns: &[f64], x: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; x.len()];
@@ -166,8 +194,8 @@ impl Assembled {
 
 #[test]
 fn double_layer_of_one_is_the_solid_angle() {
-    for (in_tank, on_solids) in [(false, 2.0), (true, 0.0)] {
-        let a = assembled(in_tank);
+    for (in_tank, on_solids, quadrature) in BOTH.into_iter().flat_map(|q| [(false, 2.0, q), (true, 0.0, q)]) {
+        let a = assembled(in_tank, quadrature);
         let one = vec![1.0; a.nodes.len()];
         let exact: Vec<f64> = a.nodes.iter().map(|node| if node.sign > 0.0 { 1.0 } else { on_solids }).collect();
         close(&product(&a.matrix, &one), &exact, 1e-13);
@@ -186,8 +214,8 @@ fn analytic(z: Complex<f64>, in_tank: bool) -> Complex<f64> {
 fn green_identity_holds_for_harmonic_functions_inside_and_outside() {
     // With the conjugate function in place of the normal derivative: f = φ + iψ analytic gives A φ = Re(G) ψ and
     // A ψ = −Re(G) φ.
-    for in_tank in [false, true] {
-        let a = assembled(in_tank);
+    for (in_tank, quadrature) in BOTH.into_iter().flat_map(|q| [(false, q), (true, q)]) {
+        let a = assembled(in_tank, quadrature);
         let (phi, psi): (Vec<f64>, Vec<f64>) =
             a.nodes.iter().map(|node| analytic(node.point, in_tank)).map(|f| (f.re, f.im)).unzip();
         for (u, conjugate, sign) in [(&phi, &psi, 1.0), (&psi, &phi, -1.0)] {
@@ -234,8 +262,9 @@ fn single_layer(a: &Assembled, flux: &[f64]) -> Vec<f64> {
 #[test]
 fn density_form_gives_the_potential_of_the_direct_formulation() {
     for in_tank in [false, true] {
-        let a = assembled(in_tank);
-        let (model, n): (Model<'_, f64>, usize) = (a.model.view(), a.nodes.len());
+        // The logarithms below know no poles.
+        let mut a = assembled(in_tank, Quadrature::Plain);
+        let n = a.nodes.len();
         let mut matrix = a.matrix.clone();
         let mut pivots = vec![0.0; n];
         factor(&mut matrix, n, n, &mut pivots).unwrap();
@@ -243,11 +272,11 @@ fn density_form_gives_the_potential_of_the_direct_formulation() {
         // Motion of both bodies, in their own frames.
         let v = [0.4, -0.7, 0.5, -0.3, 0.2, 0.9];
         let mut potential = vec![0.0; n];
-        add_interior_potential(&model, &v, -2.0, &mut potential);
+        at_rest(&mut a.sim.view(), |c| add_interior_potential(c, &v, -2.0, &mut potential));
         factors.solve(&mut potential);
-        add_interior_potential(&model, &v, 1.0, &mut potential);
+        at_rest(&mut a.sim.view(), |c| add_interior_potential(c, &v, 1.0, &mut potential));
         let mut flux = vec![0.0; n];
-        fill_flux(&model, &v, &mut flux);
+        at_rest(&mut a.sim.view(), |c| fill_flux(c, &v, &mut flux));
         let mut direct = single_layer(&a, &flux);
         factors.solve(&mut direct);
         // In a tank a potential is determined up to a constant.
@@ -259,5 +288,61 @@ fn density_form_gives_the_potential_of_the_direct_formulation() {
         potential.iter_mut().for_each(|x| *x -= p);
         direct.iter_mut().for_each(|x| *x -= d);
         close(&potential, &direct, 5e-14);
+    }
+}
+
+/// Two discs at a small gap, turned so that no node lies at the contact or all symmetric ones do.
+fn discs(gap: f64, turns: [f64; 2], nodes: usize) -> SimBuf<f64> {
+    let link = Link {
+        shape: Shape::Ellipse { a: 1.0, b: 1.0 },
+        mass: Mass::Density(1.0),
+        nodes,
+        circulation: 0.0,
+        joint: None,
+    };
+    let links = [link];
+    let body = |x, turn| Body { pose: [x, 0.0, turn], velocity: [0.3, 0.2, 0.1], root: Root::Free, links: &links };
+    let bodies = [body(0.0, turns[0]), body(2.0 + gap, turns[1])];
+    let model = ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap();
+    SimBuf::new(Arc::new(model), Method::Rk4 { step: 0.1 }).unwrap()
+}
+
+#[test]
+fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
+    use crate::configuration::fill_targets;
+    use crate::nystrom::{add_pole_velocity, induced_velocity};
+    for gap in [1e-1, 1e-3, 1e-5] {
+        for turns in [[0.0, 0.0], [-2.345, 1.234]] {
+            let nodes = 64;
+            let mut sim = discs(gap, turns, nodes);
+            at_rest(&mut sim.view(), |c| {
+                let one = vec![1.0; nodes];
+                for (j, i) in [(0, 1), (1, 0)] {
+                    let ((source, points), (target, t)) = (c.boundary(j).unwrap(), c.boundary(i).unwrap());
+                    let (mut zx, mut zy) = (vec![0.0; nodes], vec![0.0; nodes]);
+                    fill_targets(&t, c.pose(i), c.pose(j), &mut zx, &mut zy);
+                    let (mut hx, mut hy) = (vec![0.0; nodes], vec![0.0; nodes]);
+                    induced_velocity(source, &points, &one, &[], &zx, &zy, &mut hx, &mut hy);
+                    add_pole_velocity(
+                        c,
+                        (j, source),
+                        target.first,
+                        [&one, &[]],
+                        [&[], &[]],
+                        [&mut hx, &mut hy],
+                        &mut [],
+                    );
+                    for k in 0..nodes {
+                        let h = hx[k].hypot(hy[k]);
+                        // What the rounding of the nodes leaves of the largest term.
+                        let z = complex(zx[k], zy[k]);
+                        let entries = points.points().zip(points.tangents());
+                        let largest =
+                            entries.map(|(g, d)| cabs(d) * points.step / cabs(g - z).powi(2)).fold(0.0, f64::max);
+                        assert!(h < 8e-14 * largest + 1e-12, "gap {gap}, row {k}: {h:e} of {largest:e}");
+                    }
+                }
+            });
+        }
     }
 }

@@ -7,26 +7,26 @@
 
 use crate::articulation::{put_three, twist_of};
 use crate::boundary::Nodes;
+use crate::configuration::Configuration;
 use crate::lu::{Factors, factor};
-use crate::model::Model;
-use crate::nystrom::{Poses, assemble};
+use crate::nystrom::assemble;
 use crate::scalar::{Complex, Real, complex, dot};
 use crate::status::Result;
 use crate::workspace::{axpy, part, part_mut};
 
 /// Three reals per link, world to link frame (linear parts turned).
-pub(crate) fn to_link_frames<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, world: &[R], out: &mut [R]) {
-    for i in 0..model.links.len() {
+pub(crate) fn to_link_frames<R: Real>(c: &Configuration<'_, R>, world: &[R], out: &mut [R]) {
+    for i in 0..c.model.links.len() {
         let v = twist_of(world, i);
-        put_three(out, i, poses.get(model.head.plan.walls + i).unturned(v.linear), v.angular);
+        put_three(out, i, c.pose(c.model.head.plan.walls + i).unturned(v.linear), v.angular);
     }
 }
 
 /// Three reals per link, link frame to world, in place, scaled.
-pub(crate) fn to_world<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, scale: R, vector: &mut [R]) {
-    for i in 0..model.links.len() {
+pub(crate) fn to_world<R: Real>(c: &Configuration<'_, R>, scale: R, vector: &mut [R]) {
+    for i in 0..c.model.links.len() {
         let v = twist_of(vector, i);
-        put_three(vector, i, poses.get(model.head.plan.walls + i).turned(v.linear) * scale, v.angular * scale);
+        put_three(vector, i, c.pose(c.model.head.plan.walls + i).turned(v.linear) * scale, v.angular * scale);
     }
 }
 
@@ -49,8 +49,8 @@ fn flux<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl I
 }
 
 /// `out += scale · X v` on the links' nodes (v in link frames).
-pub(crate) fn add_interior_potential<R: Real>(model: &Model<'_, R>, v: &[R], scale: R, out: &mut [R]) {
-    for (_, b, nodes) in model.each_boundary() {
+pub(crate) fn add_interior_potential<R: Real>(c: &Configuration<'_, R>, v: &[R], scale: R, out: &mut [R]) {
+    for (_, b, nodes) in c.each_boundary() {
         if let Some(link) = b.link {
             for (o, x) in part_mut(out, b.first, b.nodes).iter_mut().zip(potential(&nodes, twist_of(v, link))) {
                 *o += scale * x;
@@ -60,8 +60,8 @@ pub(crate) fn add_interior_potential<R: Real>(model: &Model<'_, R>, v: &[R], sca
 }
 
 /// `out = B v` on the links' nodes, 0 on walls.
-pub(crate) fn fill_flux<R: Real>(model: &Model<'_, R>, v: &[R], out: &mut [R]) {
-    for (_, b, nodes) in model.each_boundary() {
+pub(crate) fn fill_flux<R: Real>(c: &Configuration<'_, R>, v: &[R], out: &mut [R]) {
+    for (_, b, nodes) in c.each_boundary() {
         let out = part_mut(out, b.first, b.nodes);
         match b.link {
             Some(link) => {
@@ -75,8 +75,8 @@ pub(crate) fn fill_flux<R: Real>(model: &Model<'_, R>, v: &[R], out: &mut [R]) {
 }
 
 /// `out = Bᵀ f`: three reals per link, link frames.
-pub(crate) fn flux_moments<R: Real>(model: &Model<'_, R>, f: &[R], out: &mut [R]) {
-    for (_, b, nodes) in model.each_boundary() {
+pub(crate) fn flux_moments<R: Real>(c: &Configuration<'_, R>, f: &[R], out: &mut [R]) {
+    for (_, b, nodes) in c.each_boundary() {
         let Some(link) = b.link else { continue };
         let (mut linear, mut angular) = (Complex::default(), R::zero());
         for ((x, d), f) in nodes.points().zip(nodes.tangents()).zip(part(f, b.first, b.nodes)) {
@@ -88,8 +88,8 @@ pub(crate) fn flux_moments<R: Real>(model: &Model<'_, R>, f: &[R], out: &mut [R]
 }
 
 /// `out += scale · Xᵀ f`: three reals per link, link frames.
-pub(crate) fn add_potential_moments<R: Real>(model: &Model<'_, R>, f: &[R], scale: R, out: &mut [R]) {
-    for (_, b, nodes) in model.each_boundary() {
+pub(crate) fn add_potential_moments<R: Real>(c: &Configuration<'_, R>, f: &[R], scale: R, out: &mut [R]) {
+    for (_, b, nodes) in c.each_boundary() {
         let Some(link) = b.link else { continue };
         let mut sum = [R::zero(); 3];
         for (((f, x), y), chi) in part(f, b.first, b.nodes).iter().zip(nodes.x).zip(nodes.y).zip(nodes.chi) {
@@ -120,21 +120,14 @@ impl<R: Real> BoundarySystem<'_, R> {
 
     /// Assembles, sets the first right-hand sides to −2 X v for the link-frame motions in `motions` (columns of
     /// three reals per link), factorizes and solves. O(N³).
-    pub(crate) fn solve(
-        &mut self,
-        model: &Model<'_, R>,
-        poses: Poses<'_, R>,
-        motions: &[R],
-        zx: &mut [R],
-        zy: &mut [R],
-    ) -> Result<()> {
-        assemble(model, poses, self.matrix, self.ld, self.regular, zx, zy);
-        let rows = 3 * model.links.len();
+    pub(crate) fn solve(&mut self, c: &Configuration<'_, R>, motions: &[R], zx: &mut [R], zy: &mut [R]) -> Result<()> {
+        assemble(c, self.matrix, self.ld, self.regular, zx, zy);
+        let rows = 3 * c.model.links.len();
         let columns = motions.chunks_exact(rows.max(1)).len();
         for (k, v) in motions.chunks_exact(rows.max(1)).enumerate() {
             let column = self.column(k);
             column.fill(R::zero());
-            add_interior_potential(model, v, -R::TWO, column);
+            add_interior_potential(c, v, -R::TWO, column);
         }
         let used = (self.unknowns + columns) * self.ld;
         factor(part_mut(self.matrix, 0, used), self.ld, self.unknowns, self.pivots)?;

@@ -18,7 +18,18 @@ mod sealed {
 
 /// Scalar type of a model: `f32` or `f64`. Sealed.
 pub trait Real:
-    sealed::Sealed + Copy + Default + PartialOrd + Debug + Display + Send + Sync + 'static + NumAssign + Neg<Output = Self>
+    sealed::Sealed
+    + crate::lu::Vectors
+    + Copy
+    + Default
+    + PartialOrd
+    + Debug
+    + Display
+    + Send
+    + Sync
+    + 'static
+    + NumAssign
+    + Neg<Output = Self>
 {
     /// Not a number; the value that an access out of range yields.
     const NAN: Self;
@@ -105,17 +116,6 @@ pub trait Real:
     fn is_nan(self) -> bool {
         self != self
     }
-    /// Factorizes a large matrix by an optional package; `None` when there is none for this size.
-    #[doc(hidden)]
-    #[inline]
-    fn factor_large(
-        _a: &mut [Self],
-        _ld: usize,
-        _n: usize,
-        _pivots: &mut [Self],
-    ) -> Option<crate::status::Result<Self>> {
-        None
-    }
     /// Nearest integer.
     #[inline]
     fn round(self) -> Self {
@@ -186,15 +186,6 @@ macro_rules! real {
             #[inline]
             fn floor(self) -> Self {
                 libm::$floor(self)
-            }
-            #[cfg(feature = "faer")]
-            fn factor_large(
-                a: &mut [Self],
-                ld: usize,
-                n: usize,
-                pivots: &mut [Self],
-            ) -> Option<crate::status::Result<Self>> {
-                crate::lu_faer::factor(a, ld, n, pivots)
             }
             #[inline]
             fn abs(self) -> Self {

@@ -1,15 +1,18 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 
+use crate::configuration::Poses;
 use crate::contact::{first_misplaced, swept_contact};
-use crate::integrate::{Abm4, Adams, Rk4, System};
+use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};
 use crate::work::{Counters, Dims, Work};
 use crate::workspace::{at, buffers, copy, part, put};
+
+/// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
+pub const STEP_LIMIT: u64 = 1_000_000;
 
 /// Integrator of a simulation.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -32,6 +35,50 @@ pub enum Method<R> {
         /// Absolute tolerance.
         absolute: R,
     },
+    /// Implicit Gauss–Legendre of order 6, fixed step, 10 to 20 evaluations per step: for long runs, since the energy
+    /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
+    /// `implicit`, which `std` includes.
+    Gauss6 {
+        /// Step, s.
+        step: R,
+    },
+}
+
+/// Estimated local errors of time integration (see [`Sim::time_error`]): each the largest over the unknowns of its kind.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct TimeError<R> {
+    /// Of the free coordinates in the last step that could be estimated, m and rad; NaN if there was none.
+    pub position: R,
+    /// Of their rates, m/s and rad/s; NaN if there was none, 0 for a lone swimmer, whose rates are not integrated.
+    pub velocity: R,
+    /// Sum over all those steps, of the coordinates.
+    pub position_sum: R,
+    /// Sum over all those steps, of the rates.
+    pub velocity_sum: R,
+    /// Number of steps that could not be estimated, and are missing in the sums.
+    pub unknown: u64,
+}
+
+impl<R: Real> Default for TimeError<R> {
+    fn default() -> Self {
+        let zero = R::zero();
+        TimeError { position: R::NAN, velocity: R::NAN, position_sum: zero, velocity_sum: zero, unknown: 0 }
+    }
+}
+
+impl<R: Real> TimeError<R> {
+    /// Adds a step whose state has `n` coordinates, then (if it has) their rates.
+    fn add(&mut self, error: Option<&[R]>, n: usize, rates: bool) {
+        let Some(error) = error else {
+            self.unknown += 1;
+            return;
+        };
+        let largest = |part: &[R]| part.iter().fold(R::zero(), |m, e| m.max(e.abs()));
+        (self.position, self.velocity) =
+            (largest(part(error, 0, n)), largest(if rates { part(error, n, n) } else { &[] }));
+        self.position_sum += self.position;
+        self.velocity_sum += self.velocity;
+    }
 }
 
 /// Length of a simulation's memory.
@@ -62,7 +109,11 @@ pub struct SimHead<R> {
     pub(crate) base: R,
     pub(crate) step_count: u64,
     pub(crate) adams: Adams<R>,
+    pub(crate) rk4: Rk4<R>,
     pub(crate) abm4: Abm4<R>,
+    pub(crate) gauss6: Gauss6<R>,
+    pub(crate) step_limit: u64,
+    pub(crate) time_error: TimeError<R>,
     pub(crate) impulse: [R; 3],
     pub(crate) counters: Counters,
     /// The buffers hold an evaluation of the state shown.
@@ -99,7 +150,8 @@ impl StateDims {
         }
     }
     fn work<R: Real>(&self) -> Option<usize> {
-        let lens = [Rk4::work_len(self.state), Abm4::<R>::work_len(self.state), Adams::<R>::work_len(self.state)];
+        let n = self.state;
+        let lens = [Rk4::<R>::work_len(n), Abm4::<R>::work_len(n), Adams::<R>::work_len(n), Gauss6::<R>::work_len(n)];
         lens.into_iter().try_fold(0, |most, len| Some(most.max(len?)))
     }
 }
@@ -224,10 +276,13 @@ impl<'a, R: Real> Sim<'a, R> {
     /// Checks a method; the head of a simulation that has not begun.
     ///
     /// # Errors
-    /// `BadStep`, `BadTolerance`.
+    /// `BadStep`, `BadTolerance`; `Unsupported` for `Gauss6` without the feature `implicit`.
     pub fn head(method: Method<R>) -> Result<SimHead<R>> {
+        if cfg!(not(feature = "implicit")) && matches!(method, Method::Gauss6 { .. }) {
+            return Err(Error::new(Status::Unsupported).of("method", f64::NAN));
+        }
         let (relative, absolute) = match method {
-            Method::Rk4 { step } | Method::Abm4 { step } => {
+            Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 if !(step.is_finite() && step > R::zero()) {
                     return Err(Error::new(Status::BadStep).of("step", step.to_f64()));
                 }
@@ -241,7 +296,11 @@ impl<'a, R: Real> Sim<'a, R> {
             base: R::zero(),
             step_count: 0,
             adams: Adams::new(relative, absolute, None)?,
+            rk4: Rk4::new(),
             abm4: Abm4::new(),
+            gauss6: Gauss6::new(),
+            step_limit: STEP_LIMIT,
+            time_error: TimeError::default(),
             impulse: [R::zero(); 3],
             counters: Counters::default(),
             fresh: false,
@@ -333,6 +392,48 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         c
     }
+    /// Estimated errors of the steps made since the start or the last [`Sim::set_state`]: local errors, that is of each
+    /// step by itself. What they grow to depends on the motion; their sum is right where it neither amplifies nor
+    /// forgets errors.
+    ///
+    /// - `Adams`: of the formula below the one that is used, so that it is too large, seldom by less than ten.
+    /// - `Abm4`: Milne's estimate, from the difference of predictor and corrector; not in the first three steps after a start,
+    ///   which are Runge–Kutta.
+    /// - `Rk4`: by comparison with a formula of order 7 through the rates known (see [`Rk4`]); lags one step behind, and
+    ///   begins after seven equal steps.
+    /// - `Gauss6`: none. Compare with half the step, or watch the energy.
+    ///
+    /// No estimate takes an evaluation. None sees the error of space, for which there is [`Sim::resolution`].
+    pub fn time_error(&self) -> TimeError<R> {
+        self.head.time_error
+    }
+
+    /// How many steps one call of [`Sim::advance`] or [`Sim::advance_dense`] may make; at first [`STEP_LIMIT`].
+    ///
+    /// # Errors
+    /// `OutOfRange` for 0.
+    pub fn set_step_limit(&mut self, steps: u64) -> Result<()> {
+        if steps == 0 {
+            return Err(Error::new(Status::OutOfRange).of("step_limit", 0.0));
+        }
+        self.head.step_limit = steps;
+        Ok(())
+    }
+
+    /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
+    pub(crate) fn note_error(&mut self, estimated: bool) {
+        let (n, memory) = (self.state.y.len(), &*self.state.integrator);
+        let error = match self.head.method {
+            _ if !estimated => None,
+            Method::Rk4 { .. } => self.head.rk4.error(n, memory),
+            Method::Abm4 { .. } => self.head.abm4.error(n, memory),
+            Method::Adams { .. } => self.head.adams.error(memory),
+            Method::Gauss6 { .. } => None,
+        };
+        let rates = self.model.head.plan.formulation != Formulation::LockedMomentum;
+        self.head.time_error.add(error, self.model.head.plan.free_coordinates, rates);
+    }
+
     /// The integrated state: free coordinates, their rates (not for a lone swimmer, whose rates follow from its
     /// impulse), and last the work of the drives if anything is driven.
     pub fn state(&self) -> &[R] {
@@ -367,6 +468,7 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(e);
         }
         self.restart();
+        self.head.time_error = TimeError::default();
         Ok(())
     }
 

@@ -69,6 +69,7 @@ statuses! {
     OutOfMemory = -28, "no memory could be had";
     UnknownKind = -29, "a kind or flag has no such value";
     Aliasing = -30, "two buffers overlap that must not";
+    NoConvergence = -31, "the equations of an implicit step were not solved: the step is too long";
 }
 
 /// Where in the scene something is wrong. Indices count from 0; walls and bodies are counted apart.

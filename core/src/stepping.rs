@@ -1,10 +1,9 @@
 //! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
 //! state as they were.
 
+use crate::configuration::Poses;
 use crate::contact::{set_anchor, swept_contact};
-use crate::integrate::Rk4;
 use crate::model::{Formulation, Model};
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::sim::{Method, Motion, Sim, motion, split_state};
 use crate::status::{Error, Result, Status};
@@ -15,10 +14,10 @@ impl<R: Real> Sim<'_, R> {
     /// One step of the method (for `Adams` one step of its own choice).
     ///
     /// # Errors
-    /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`; time and state are then as before.
+    /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`, `NoConvergence`; time and state are then as before.
     pub fn step(&mut self) -> Result<()> {
         match self.head.method {
-            Method::Rk4 { step } | Method::Abm4 { step } => {
+            Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 self.fixed_step(step, true)?;
             }
             Method::Adams { .. } => {
@@ -32,7 +31,8 @@ impl<R: Real> Sim<'_, R> {
     /// Advances to exactly `t_end`; nothing is evaluated beyond it. A fixed-step method shortens its last step.
     ///
     /// # Errors
-    /// As [`Sim::step`]; the state shown is then that of the last step that succeeded.
+    /// As [`Sim::step`], and `TooManySteps` (see [`Sim::set_step_limit`]); the state shown is then that of the last step
+    /// that succeeded, and the simulation may go on.
     pub fn advance(&mut self, t_end: R) -> Result<()> {
         self.advance_dense(t_end, t_end)
     }
@@ -50,10 +50,11 @@ impl<R: Real> Sim<'_, R> {
         if t_out == self.head.time {
             return Ok(());
         }
+        let mut left = self.head.step_limit;
         match self.head.method {
             Method::Adams { .. } => {
                 while !self.head.started || self.head.adams.time() < t_out {
-                    if let Err(e) = self.adams_step(t_stop) {
+                    if let Err(e) = self.spend(&mut left).and_then(|()| self.adams_step(t_stop)) {
                         if self.head.started && self.head.adams.time() > self.head.time {
                             self.show_adams(self.head.adams.time())?;
                         }
@@ -62,27 +63,39 @@ impl<R: Real> Sim<'_, R> {
                 }
                 self.show_adams(t_out)
             }
-            Method::Rk4 { step } | Method::Abm4 { step } => {
+            Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 // Rounding of the time must not make a step of almost no length.
                 let slack = step * R::lit(1e-6).max(R::lit(8.0) * R::EPSILON);
-                while self.head.time + step <= t_out + slack {
-                    self.fixed_step(step, true)?;
+                loop {
+                    let rest = t_out - self.head.time;
+                    if rest <= slack {
+                        break;
+                    }
+                    self.spend(&mut left)?;
+                    if rest + slack >= step {
+                        self.fixed_step(step, true)?;
+                    } else {
+                        self.fixed_step(rest, false)?;
+                        break;
+                    }
                 }
-                let rest = t_out - self.head.time;
-                if rest > slack {
-                    self.fixed_step(rest, false)?;
-                }
-                if rest.abs() <= slack || rest > slack {
-                    self.head.time = t_out;
-                }
+                self.head.time = t_out;
                 Ok(())
             }
         }
     }
 
+    /// Takes one step of those that are left.
+    fn spend(&self, left: &mut u64) -> Result<()> {
+        *left = left
+            .checked_sub(1)
+            .ok_or_else(|| Error::new(Status::TooManySteps).of("step_limit", self.head.step_limit as f64))?;
+        Ok(())
+    }
+
     /// Forgets the integrator's past, as after a jump of the drives.
     pub fn restart(&mut self) {
-        self.head.abm4.reset();
+        self.forget_steps();
         self.head.started = false;
         self.head.base = self.head.time;
         self.head.step_count = 0;
@@ -91,14 +104,17 @@ impl<R: Real> Sim<'_, R> {
     /// One step of a fixed-step method; `regular` steps keep the multistep history.
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
-        let (t, abm4) = (self.head.time, self.head.abm4);
-        let use_abm4 = regular && matches!(self.head.method, Method::Abm4 { .. });
+        let t = self.head.time;
         self.head.fresh = false;
+        if !regular {
+            self.forget_steps();
+        }
         let mut motion = motion!(self);
-        let stepped = if use_abm4 {
-            self.head.abm4.step(&mut motion, t, h, self.state.y, self.state.integrator)
-        } else {
-            Rk4::new().step(&mut motion, t, h, self.state.y, self.state.integrator)
+        let (y, memory) = (&mut *self.state.y, &mut *self.state.integrator);
+        let stepped = match self.head.method {
+            Method::Abm4 { .. } if regular => self.head.abm4.step(&mut motion, t, h, y, memory),
+            Method::Gauss6 { .. } if cfg!(feature = "implicit") => self.head.gauss6.step(&mut motion, t, h, y, memory),
+            _ => self.head.rk4.step(&mut motion, t, h, y, memory),
         };
         let next = if regular { self.head.base + R::count(self.head.step_count as usize + 1) * h } else { t + h };
         let arrived = stepped.and_then(|()| {
@@ -108,20 +124,27 @@ impl<R: Real> Sim<'_, R> {
         if let Err(e) = arrived {
             copy(self.state.y, self.state.saved);
             self.head.time = t;
-            self.head.abm4 = abm4;
-            self.head.abm4.reset();
+            self.forget_steps();
             self.head.counters.rejected += 1;
             self.show()?;
             return Err(e);
         }
         self.head.counters.steps += 1;
+        self.note_error(regular);
         if regular {
             self.head.step_count += 1;
         } else {
-            self.head.abm4.reset();
+            self.forget_steps();
             (self.head.base, self.head.step_count) = (self.head.time, 0);
         }
         Ok(())
+    }
+
+    /// Forgets what the fixed-step methods remember of earlier steps.
+    fn forget_steps(&mut self) {
+        self.head.rk4.reset();
+        self.head.abm4.reset();
+        self.head.gauss6.reset();
     }
 
     /// One accepted step of the variable-step method.
@@ -139,6 +162,7 @@ impl<R: Real> Sim<'_, R> {
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
         self.head.adams = adams;
         outcome?;
+        self.note_error(true);
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
         place_only(&self.model, &mut self.work, self.head.adams.time(), p);

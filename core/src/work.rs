@@ -2,9 +2,10 @@
 
 use crate::articulation::put_three;
 use crate::articulation::{jacobian_column, place_links, set_coordinates, twist_of, velocities};
-use crate::lu::{Factors, factor};
-use crate::model::{Control, Formulation, Model, ModelHead};
-use crate::nystrom::{Poses, put_pose};
+use crate::configuration::{Configuration, Poses, put_pose};
+use crate::ldl;
+use crate::model::{Control, Formulation, Model, ModelHead, NearDims};
+use crate::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
@@ -25,8 +26,10 @@ pub(crate) struct Dims {
     pub columns: usize,
     /// Unknowns if there is circulation, else 0.
     pub circulating: usize,
-    /// 1 if there is repulsion, gravity or circulation to keep a vector for.
+    /// Driven channels.
     pub channels: usize,
+    /// What near contact needs; 0 where it needs nothing.
+    pub near: NearDims,
 }
 
 impl Dims {
@@ -43,6 +46,7 @@ impl Dims {
             columns: p.free_coordinates + usize::from(head.prescribed_moves),
             circulating: if p.circulation { p.unknowns } else { 0 },
             channels: head.channels,
+            near: head.near,
         }
     }
 }
@@ -94,6 +98,10 @@ buffers! {
         circulation_adjoint: d.circulating,
         circulation_spare: d.circulating,
         circulation_second: d.circulating,
+        near_nodes: COLUMNS * d.near.nodes,
+        near_rungs: d.near.rungs,
+        near_ladders: if d.near.nodes > 0 { LADDER_LIST * d.boundaries } else { 0 },
+        near_preimages: if d.near.nodes > 0 { PREIMAGES * d.boundaries * d.unknowns } else { 0 },
     }
 }
 
@@ -127,7 +135,23 @@ macro_rules! scratch {
         PairScratch { zx: $w.zx, zy: $w.zy, hx: $w.hx, hy: $w.hy, fx: $w.fx, fy: $w.fy }
     };
 }
-pub(crate) use {flow, scratch, system};
+/// What an evaluation sees of the scene where it was placed.
+macro_rules! configuration {
+    ($w:expr, $model:expr) => {
+        Configuration {
+            model: *$model,
+            poses: Poses($w.poses),
+            near: Near {
+                nodes: $w.near_nodes,
+                rungs: $w.near_rungs,
+                ladders: $w.near_ladders,
+                preimages: $w.near_preimages,
+                unknowns: $w.density.len(),
+            },
+        }
+    };
+}
+pub(crate) use {configuration, flow, scratch, system};
 
 /// Counts that a simulation keeps.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -155,6 +179,18 @@ impl<R: Real> Work<'_, R> {
             Some((a, b, gap)) => Err(Error::new(Status::Contact).at(a).with(b).of("gap", gap.to_f64())),
             None => Ok(()),
         }
+    }
+
+    /// Ladders, nodes and preimages where the scene was placed last.
+    pub(crate) fn grade(&mut self, model: &Model<'_, R>) -> Result<()> {
+        let mut near = NearMut {
+            nodes: self.near_nodes,
+            rungs: self.near_rungs,
+            ladders: self.near_ladders,
+            preimages: self.near_preimages,
+            unknowns: self.pivots.len(),
+        };
+        near.prepare(model, Poses(self.poses))
     }
 
     /// Writes the walls' poses, once.
@@ -187,26 +223,26 @@ impl<R: Real> Work<'_, R> {
         self.momenta.fill(R::zero());
         if model.head.plan.formulation == Formulation::Kirchhoff {
             for (c, k) in self.jacobian.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1))) {
-                lone_momentum(model, Poses(self.poses), c, k);
+                lone_momentum(&configuration!(self, model), c, k);
             }
             return Ok(());
         }
         if model.head.plan.unknowns == 0 {
             return Ok(());
         }
-        let poses = Poses(self.poses);
-        for (c, m) in self.jacobian.chunks_exact(rows.max(1)).zip(self.moving.chunks_exact_mut(rows.max(1))) {
-            to_link_frames(model, poses, c, m);
+        let c = &configuration!(self, model);
+        for (v, m) in self.jacobian.chunks_exact(rows.max(1)).zip(self.moving.chunks_exact_mut(rows.max(1))) {
+            to_link_frames(c, v, m);
         }
         counters.factorizations += 1;
         let mut system = system!(self);
-        system.solve(model, poses, self.moving, self.zx, self.zy)?;
+        system.solve(c, self.moving, self.zx, self.zy)?;
         let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
         for (k, (m, p)) in columns.enumerate() {
             copy(self.solution, system.column(k));
-            add_interior_potential(model, m, R::one(), self.solution);
-            flux_moments(model, self.solution, p);
-            to_world(model, poses, density, p);
+            add_interior_potential(c, m, R::one(), self.solution);
+            flux_moments(c, self.solution, p);
+            to_world(c, density, p);
         }
         Ok(())
     }
@@ -229,14 +265,13 @@ impl<R: Real> Work<'_, R> {
                 put(self.reduced, j * n + k, sum);
             }
         }
-        factor(part_mut(self.reduced, 0, n * n), n, n, self.reduced_pivots)?;
-        Ok(())
+        ldl::factor(part_mut(self.reduced, 0, n * n), n, self.reduced_pivots)
     }
 
     /// Solves the reduced system in place: the right-hand side is in the last column of `reduced`.
     pub(crate) fn solve_reduced(&mut self, n: usize) {
         let Some((lu, rhs)) = self.reduced.split_at_mut_checked(n * n) else { return };
-        Factors { lu, ld: n, pivots: self.reduced_pivots }.solve(part_mut(rhs, 0, n));
+        ldl::solve(lu, n, self.reduced_pivots, part_mut(rhs, 0, n));
     }
 
     /// The density of the motion `qd` itself, its adjoint, and its momentum (symmetrized, world directions, with density).
@@ -245,15 +280,15 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn solve_motion(&mut self, model: &Model<'_, R>, combined: bool) {
         let rows = 3 * model.links.len();
         if model.head.plan.formulation == Formulation::Kirchhoff {
-            lone_momentum(model, Poses(self.poses), self.qd, self.momentum);
+            lone_momentum(&configuration!(self, model), self.qd, self.momentum);
             return;
         }
         if model.head.plan.unknowns == 0 {
             self.momentum.fill(R::zero());
             return;
         }
-        let poses = Poses(self.poses);
-        to_link_frames(model, poses, self.qd, self.v);
+        let c = &configuration!(self, model);
+        to_link_frames(c, self.qd, self.v);
         let mut system = system!(self);
         if combined {
             let free = model.head.plan.free_coordinates;
@@ -262,35 +297,35 @@ impl<R: Real> Work<'_, R> {
             system.combine(rates.map(|(_, ds)| *ds).chain(last), self.density);
         } else {
             self.density.fill(R::zero());
-            add_interior_potential(model, self.v, -R::TWO, self.density);
+            add_interior_potential(c, self.v, -R::TWO, self.density);
             system.factors().solve(self.density);
         }
-        fill_flux(model, self.v, self.adjoint);
+        fill_flux(c, self.v, self.adjoint);
         // ½ Xᵀ B v now, −Xᵀ λ after the solve: M_hᵀ v = Xᵀ (B v − 2 λ).
         self.momentum.fill(R::zero());
-        add_potential_moments(model, self.adjoint, R::HALF, self.momentum);
+        add_potential_moments(c, self.adjoint, R::HALF, self.momentum);
         system.factors().solve_transposed(self.adjoint);
-        add_potential_moments(model, self.adjoint, -R::one(), self.momentum);
+        add_potential_moments(c, self.adjoint, -R::one(), self.momentum);
         copy(self.solution, self.density);
-        add_interior_potential(model, self.v, R::one(), self.solution);
-        flux_moments(model, self.solution, self.spare);
+        add_interior_potential(c, self.v, R::one(), self.solution);
+        flux_moments(c, self.solution, self.spare);
         axpy(self.momentum, R::HALF, self.spare);
-        to_world(model, poses, model.head.fluid_density, self.momentum);
+        to_world(c, model.head.fluid_density, self.momentum);
     }
 }
 
 /// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
-pub(crate) fn lone_momentum<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, v: &[R], out: &mut [R]) {
-    let turn = poses.get(0);
+pub(crate) fn lone_momentum<R: Real>(c: &Configuration<'_, R>, v: &[R], out: &mut [R]) {
+    let turn = c.pose(0);
     let v = twist_of(v, 0);
     let b = turn.unturned(v.linear);
-    let m = &model.head.lone_added_mass;
+    let m = &c.model.head.lone_added_mass;
     let row = |r: usize| {
         m.get(r)
             .zip(m.get(r + 3))
             .zip(m.get(r + 6))
             .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
     };
-    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * model.head.fluid_density;
-    put_three(out, 0, linear, row(2) * model.head.fluid_density);
+    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * c.model.head.fluid_density;
+    put_three(out, 0, linear, row(2) * c.model.head.fluid_density);
 }

@@ -302,7 +302,8 @@ pub unsafe extern "C" fn nekton_sim_step(sim: *mut SimHandle<f64>, diag: *mut ne
 
 /// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
 /// the step function of a controller: set channels, advance by a sample time, read the state.
-/// Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE. The simulation is then
+/// Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+/// nekton_sim_set_step_limit). The simulation is then
 /// as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_advance(
@@ -326,6 +327,15 @@ pub unsafe extern "C" fn nekton_sim_advance_dense(
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
     unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
+}
+
+/// How many steps one call of nekton_sim_advance or nekton_sim_advance_dense may make (at first 1000000) before it
+/// ends with TOO_MANY_STEPS, so that no call takes for ever.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (0). One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton_sim_set_step_limit(sim: *mut SimHandle<f64>, steps: u64) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::set_step_limit(sim, steps)) }
 }
 
 /// Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,

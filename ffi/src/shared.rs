@@ -10,8 +10,6 @@ pub const NEKTON_ABI_VERSION: u32 = 1;
 
 /// Capability: nekton_model_create, nekton_sim_create and their free work.
 pub const NEKTON_CAP_ALLOC: u32 = 1;
-/// Capability: large matrices are factorized by a tuned package.
-pub const NEKTON_CAP_FAER: u32 = 2;
 
 /// Alignment that is enough for every object, bytes.
 pub const NEKTON_ALIGN: usize = 8;
@@ -27,9 +25,7 @@ pub extern "C" fn nekton_abi_version() -> u32 {
 /// What this build can do: a sum of NEKTON_CAP_... Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn nekton_capabilities() -> u32 {
-    let alloc = if cfg!(feature = "std") { NEKTON_CAP_ALLOC } else { 0 };
-    let faer = if cfg!(feature = "faer") { NEKTON_CAP_FAER } else { 0 };
-    alloc | faer
+    if cfg!(feature = "std") { NEKTON_CAP_ALLOC } else { 0 }
 }
 
 /// One line of text about a status; "unknown status" for any other number. Never NULL; static. Any thread.

@@ -271,6 +271,12 @@ pub(crate) unsafe fn advance<R: Real>(handle: *mut SimHandle<R>, t_out: R, t_sto
     Ok(Status::Ok)
 }
 
+pub(crate) unsafe fn set_step_limit<R: Real>(handle: *mut SimHandle<R>, steps: u64) -> Outcome<Status> {
+    // SAFETY: checked in `sim`.
+    unsafe { sim(handle.cast_const())?.view()?.set_step_limit(steps)? };
+    Ok(Status::Ok)
+}
+
 pub(crate) unsafe fn set_channel<R: Real>(
     handle: *mut SimHandle<R>,
     channel: usize,

@@ -256,6 +256,9 @@ pub const NEKTON_METHOD_RK4: i32 = 1;
 pub const NEKTON_METHOD_ABM4: i32 = 2;
 /// Adams-Bashforth-Moulton of variable order 1 to 12 and variable step, 2 evaluations a step.
 pub const NEKTON_METHOD_ADAMS: i32 = 3;
+/// Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+/// archives for microcontrollers, unless they were built with the feature implicit.
+pub const NEKTON_METHOD_GAUSS6: i32 = 4;
 
 /// How a simulation is integrated in time.
 #[repr(C)]
@@ -263,7 +266,7 @@ pub const NEKTON_METHOD_ADAMS: i32 = 3;
 pub struct MethodDef<R> {
     /// NEKTON_METHOD_...
     pub kind: i32,
-    /// RK4, ABM4: step, s.
+    /// RK4, ABM4, GAUSS6: step, s.
     pub step: R,
     /// ADAMS: relative tolerance of each step.
     pub relative: R,

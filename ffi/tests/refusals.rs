@@ -307,7 +307,7 @@ fn memory_that_is_null_misaligned_or_short_is_refused_untouched() {
         }
         for (method, status) in [
             (MethodDef { kind: 0, ..adams() }, Status::UnknownKind),
-            (MethodDef { kind: 4, ..adams() }, Status::UnknownKind),
+            (MethodDef { kind: 5, ..adams() }, Status::UnknownKind),
             (MethodDef { step: 0.0, ..fixed(NEKTON_METHOD_RK4) }, Status::BadStep),
             (MethodDef { step: f64::NAN, ..fixed(NEKTON_METHOD_ABM4) }, Status::BadStep),
             (MethodDef { relative: f64::NAN, ..adams() }, Status::BadTolerance),
@@ -490,7 +490,8 @@ fn outlines_that_were_turned_round_are_a_notice() {
 
 #[test]
 fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
-    for method in [adams(), fixed(NEKTON_METHOD_RK4), fixed(NEKTON_METHOD_ABM4)] {
+    let fixed_steps = [NEKTON_METHOD_RK4, NEKTON_METHOD_ABM4, NEKTON_METHOD_GAUSS6].map(fixed);
+    for method in fixed_steps.into_iter().chain([adams()]) {
         // Two bodies on a collision course.
         let link = ellipse(0.5, 0.5);
         let mut bodies = [body(), body()];
@@ -530,6 +531,14 @@ fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
             assert_eq!(shown(sim), before);
             assert_eq!(sim_advance_dense(sim, 5.0, 6.0, &mut diag), Status::Contact.code());
             assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_set_step_limit(sim, 0), Status::OutOfRange.code());
+            // Of free flight the variable-step method makes one step.
+            if method.kind != NEKTON_METHOD_ADAMS {
+                assert_eq!(sim_set_step_limit(sim, 1), 0);
+                assert_eq!(sim_advance(sim, 0.3, &mut diag), Status::TooManySteps.code());
+                assert!(diag.time > 0.12 && diag.time < 0.3, "{diag:?}");
+            }
+            assert_eq!(sim_set_step_limit(sim, 1_000_000), 0);
             assert_eq!(sim_advance(sim, nan, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_advance(sim, f64::INFINITY, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::BadStep.code());
@@ -581,7 +590,7 @@ fn a_copy_goes_on_like_its_original() {
     with_scene(|def, _, links| {
         links[1].signal.kind = NEKTON_SIGNAL_CHANNEL;
         let (_model_memory, model) = compile(def);
-        for method in [adams(), fixed(NEKTON_METHOD_ABM4)] {
+        for method in [adams(), fixed(NEKTON_METHOD_ABM4), fixed(NEKTON_METHOD_GAUSS6)] {
             let (_a, original) = simulate(model, &method);
             let (_b, copy) = simulate(model, &fixed(NEKTON_METHOD_RK4));
             let (from, to) = ([0.0; 4], [0.5, 0.2, 0.0, 0.0]);

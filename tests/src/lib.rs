@@ -6,6 +6,8 @@ use nekton::status::{Error, Result};
 use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::sync::Arc;
 
+pub mod extremes;
+
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerances {

@@ -105,8 +105,8 @@ fn nothing_is_allocated_while_stepping() {
 }
 
 /// Memory for the longest scene below.
-static MODEL: Mutex<[f64; 30_000]> = Mutex::new([0.0; 30_000]);
-static SIM: Mutex<[f64; 60_000]> = Mutex::new([0.0; 60_000]);
+static MODEL: Mutex<[f64; 40_000]> = Mutex::new([0.0; 40_000]);
+static SIM: Mutex<[f64; 80_000]> = Mutex::new([0.0; 80_000]);
 
 /// Everything that a simulation shows after a while, to the bit.
 fn shown(sim: &mut Sim<'_, f64>, out: &mut [u64; 64]) {

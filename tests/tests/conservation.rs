@@ -1,7 +1,7 @@
 //! What the motion conserves, and what it does not.
 
 use nekton::Sim;
-use nekton::scene::{Body, Drive, Harmonic, Link, Repulsion, Scene, Shape, Signal, Wall, Window};
+use nekton::scene::{Body, Drive, Harmonic, Link, Quadrature, Repulsion, Scene, Shape, Signal, Wall, Window};
 use nekton_tests::*;
 
 const OBSTACLES: [Wall<'static, f64>; 2] = [
@@ -73,7 +73,8 @@ fn energy_of_free_bodies_with_every_term_is_conserved() {
 fn energy_is_conserved_even_when_space_is_not_resolved() {
     let links = three(12, [0.0; 3]);
     let bodies = bodies(&links);
-    let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
+    // Nodes that follow the configuration would change the discrete energy as they move.
+    let scene = Scene { quadrature: Quadrature::Plain, bodies: &bodies, ..Scene::new(1.0, 0.0) };
     let (drift, kinetic) = drift(&mut simulation(&scene, adams(1e-11)).view(), 2.0);
     assert!(drift <= 3e-10 * kinetic, "{drift:e} of {kinetic:e}");
 }

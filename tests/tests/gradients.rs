@@ -1,6 +1,8 @@
 //! Forces are the derivatives of their energies, found here by differences of sixth order.
 
-use nekton::scene::{Body, Drive, ForceFormula, Harmonic, Link, Repulsion, Root, Scene, Shape, Signal, Wall};
+use nekton::scene::{
+    Body, Drive, ForceFormula, Harmonic, Link, Quadrature, Repulsion, Root, Scene, Shape, Signal, Wall,
+};
 use nekton_tests::*;
 
 /// Three links without any symmetry, as three bodies.
@@ -33,13 +35,15 @@ fn tank() -> Wall<'static, f64> {
     wall(Shape::Ellipse { a: 4.0, b: 3.0 }, [0.4, 0.1], 0.2, 128)
 }
 
-/// Runs `check` on the three bodies alone, beside an obstacle, and in a tank with the obstacle.
-fn everywhere(nodes: usize, check: impl Fn(&str, &Scene<'_, f64>)) {
+/// Runs `check` on the three bodies alone, beside an obstacle, and in a tank with the obstacle. With nodes that stay where
+/// they are (`Plain`) a force is the derivative of the discrete energy at any resolution; with graded ones, where space is
+/// resolved.
+fn everywhere(nodes: usize, quadrature: Quadrature, check: impl Fn(&str, &Scene<'_, f64>)) {
     let links = links(nodes);
     let bodies = bodies(&links);
     let obstacles = obstacle();
     let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 0.01 });
-    let alone = Scene { repulsion, bodies: &bodies, ..Scene::new(1.3, 9.81) };
+    let alone = Scene { repulsion, quadrature, bodies: &bodies, ..Scene::new(1.3, 9.81) };
     check("unbounded", &alone);
     let beside = Scene { obstacles: &obstacles, ..alone };
     check("obstacle", &beside);
@@ -62,8 +66,8 @@ fn contraction(scene: &Scene<'_, f64>) -> Vec<f64> {
     force
 }
 
-fn check_christoffel(nodes: usize) {
-    everywhere(nodes, |place, scene| {
+fn check_christoffel(nodes: usize, quadrature: Quadrature) {
+    everywhere(nodes, quadrature, |place, scene| {
         let scene = Scene { repulsion: None, ..*scene };
         let force = vector(&mut at_start(&scene).view(), |sim, out| sim.christoffel(out));
         let exact = contraction(&scene);
@@ -74,17 +78,18 @@ fn check_christoffel(nodes: usize) {
 
 #[test]
 fn christoffel_force_is_the_contraction_of_the_derivative_of_added_mass() {
-    check_christoffel(96);
+    check_christoffel(96, Quadrature::Plain);
+    check_christoffel(160, Quadrature::Graded);
 }
 
 #[test]
 fn christoffel_force_is_exact_even_when_space_is_not_resolved() {
-    check_christoffel(16);
+    check_christoffel(16, Quadrature::Plain);
 }
 
 #[test]
 fn christoffel_tensor_contracts_to_the_force_and_comes_from_a_potential() {
-    everywhere(32, |place, scene| {
+    everywhere(32, Quadrature::Plain, |place, scene| {
         let mut sim = at_start(scene);
         let mut sim = sim.view();
         let force = vector(&mut sim, |sim, out| sim.christoffel(out));
@@ -115,7 +120,7 @@ fn christoffel_tensor_contracts_to_the_force_and_comes_from_a_potential() {
 
 #[test]
 fn boundary_formula_agrees_with_the_exact_gradient_when_space_is_resolved() {
-    everywhere(128, |place, scene| {
+    everywhere(128, Quadrature::Graded, |place, scene| {
         let force = |force| vector(&mut at_start(&Scene { force, ..*scene }).view(), |sim, out| sim.christoffel(out));
         let (exact, boundary) = (force(ForceFormula::ExactGradient), force(ForceFormula::Boundary));
         println!("{place}: {:.1e}", difference(&boundary, &exact));
@@ -159,7 +164,7 @@ fn boundary_formula_agrees_with_the_exact_gradient_for_a_swimmer() {
 
 #[test]
 fn repulsion_is_the_derivative_of_its_potential() {
-    everywhere(48, |place, scene| {
+    everywhere(48, Quadrature::Plain, |place, scene| {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.repulsion(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().repulsion]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
@@ -170,8 +175,8 @@ fn repulsion_is_the_derivative_of_its_potential() {
 #[test]
 fn circulation_gradient_is_the_derivative_of_the_circulatory_energy() {
     // 48 nodes do not resolve every body: the gradient must be that of the discrete energy.
-    for nodes in [48, 96] {
-        everywhere(nodes, |place, scene| {
+    for (nodes, quadrature) in [(48, Quadrature::Plain), (96, Quadrature::Plain), (160, Quadrature::Graded)] {
+        everywhere(nodes, quadrature, |place, scene| {
             let force = vector(&mut at_start(scene).view(), |sim, out| sim.circulation_gradient(out));
             let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().circulation]).concat();
             println!("{place}, {nodes} nodes: {:.1e}", difference(&force, &exact));
@@ -182,7 +187,7 @@ fn circulation_gradient_is_the_derivative_of_the_circulatory_energy() {
 
 #[test]
 fn buoyancy_is_the_derivative_of_its_potential() {
-    everywhere(32, |place, scene| {
+    everywhere(32, Quadrature::Plain, |place, scene| {
         let force = vector(&mut at_start(scene).view(), |sim, out| sim.buoyancy(out));
         let exact = derivatives(scene, |sim| vec![sim.energy().unwrap().buoyancy]).concat();
         println!("{place}: {:.1e}", difference(&force, &exact));
@@ -193,7 +198,7 @@ fn buoyancy_is_the_derivative_of_its_potential() {
 #[test]
 fn gyroscopic_matrix_is_a_closed_form() {
     // G is the exterior derivative of a momentum plus constants: ∂_a G_bc + ∂_b G_ca + ∂_c G_ab = 0.
-    everywhere(96, |place, scene| {
+    everywhere(96, Quadrature::Plain, |place, scene| {
         let slopes = derivatives(scene, |sim| matrix(sim, |sim, out| sim.gyroscopic(out)).concat());
         let n = slopes.len();
         let g = |a: usize, b: usize, c: usize| slopes[a][n * c + b];

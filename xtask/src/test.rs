@@ -36,8 +36,8 @@ pub fn run() -> ExitCode {
     }
     steps.command("tests", &mut cargo(&["test", "--workspace", "--no-fail-fast"]));
     steps.command(
-        "core tests with fft and faer",
-        &mut cargo(&["test", "--package", "nekton", "--features", "fft,faer", "--no-fail-fast"]),
+        "core tests with fft",
+        &mut cargo(&["test", "--package", "nekton", "--features", "fft", "--no-fail-fast"]),
     );
     steps.command(
         "documentation",

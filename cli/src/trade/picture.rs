@@ -60,7 +60,8 @@ fn method_index(name: &str) -> usize {
     match name {
         "adams" => 0,
         "rk4" => 1,
-        _ => 2,
+        "abm4" => 2,
+        _ => 3,
     }
 }
 

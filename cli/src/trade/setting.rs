@@ -44,6 +44,7 @@ pub fn method_name(integrator: Integrator) -> &'static str {
     match integrator {
         Integrator::Rk4 { .. } => "rk4",
         Integrator::Abm4 { .. } => "abm4",
+        Integrator::Gauss6 { .. } => "gauss6",
         Integrator::Adams { .. } => "adams",
     }
 }
@@ -51,7 +52,7 @@ pub fn method_name(integrator: Integrator) -> &'static str {
 /// Step or tolerance of an integrator.
 pub fn parameter(integrator: Integrator) -> f64 {
     match integrator {
-        Integrator::Rk4 { step } | Integrator::Abm4 { step } => step,
+        Integrator::Rk4 { step } | Integrator::Abm4 { step } | Integrator::Gauss6 { step } => step,
         Integrator::Adams { tolerance } => tolerance,
     }
 }
@@ -61,6 +62,7 @@ pub fn integrator(name: &str, value: f64) -> Option<Integrator> {
     Some(match name {
         "rk4" => Integrator::Rk4 { step: value },
         "abm4" => Integrator::Abm4 { step: value },
+        "gauss6" => Integrator::Gauss6 { step: value },
         "adams" => Integrator::Adams { tolerance: value },
         _ => return None,
     })
@@ -71,6 +73,7 @@ pub fn method<R: Real>(integrator: Integrator) -> Method<R> {
     match integrator {
         Integrator::Rk4 { step } => Method::Rk4 { step: R::lit(step) },
         Integrator::Abm4 { step } => Method::Abm4 { step: R::lit(step) },
+        Integrator::Gauss6 { step } => Method::Gauss6 { step: R::lit(step) },
         Integrator::Adams { tolerance } => Method::Adams { relative: R::lit(tolerance), absolute: R::lit(tolerance) },
     }
 }

@@ -137,7 +137,8 @@ impl Study<'_> {
         if !self.quick {
             let steps = (0..HALVINGS).map(|k| self.reference.until / (OUTPUTS << k) as f64);
             all.push(steps.clone().map(|step| Integrator::Rk4 { step }).collect());
-            all.push(steps.map(|step| Integrator::Abm4 { step }).collect());
+            all.push(steps.clone().map(|step| Integrator::Abm4 { step }).collect());
+            all.push(steps.map(|step| Integrator::Gauss6 { step }).collect());
         }
         all
     }

@@ -13,6 +13,8 @@ use crate::workspace::{part_mut, put};
 pub const MAX_LOBES: usize = 1024;
 /// Rungs of the ladder at a bend.
 const BEND_RUNGS: usize = 8;
+/// Most tips of an outline that is not a polygon.
+const MOST_TIPS: usize = 32;
 /// Samples per corner in the test of a rounded polygon.
 const PER_CORNER: usize = 64;
 /// Samples closer than this part of their spacing cannot be told from touching.
@@ -62,6 +64,10 @@ struct Sizes {
     own: usize,
     /// Rungs, at most.
     rungs: usize,
+    /// Permanent ladders, at most.
+    ladders: usize,
+    /// Tips and corners, at most.
+    tips: usize,
     scratch: usize,
 }
 
@@ -76,6 +82,53 @@ fn rectangle<R: Real>(width: R, height: R) -> [[R; 2]; 4] {
     [[-x, -y], [x, -y], [x, y], [-x, y]]
 }
 
+impl<R: Real> Outline<R> {
+    /// Visits the permanent ladders, in the order in which the grading was made of them.
+    pub(crate) fn each_ladder(&self, store: &[R], mut visit: impl FnMut(Ladder<R>)) {
+        match self.kind.curve(store) {
+            Curve::Polygon(polygon) => polygon.ladders().for_each(visit),
+            Curve::Fourier(_) if self.rungs > 0 => {
+                let mut room = self.rungs;
+                self.each_bend(store, |ladder| {
+                    if ladder.count() <= room {
+                        room -= ladder.count();
+                        visit(ladder);
+                    }
+                });
+            }
+            _ => (),
+        }
+    }
+
+    /// Visits the parameters of tips (curvature times perimeter above 4π) and corners.
+    pub(crate) fn each_tip(&self, store: &[R], mut visit: impl FnMut(R)) {
+        match self.kind {
+            Kind::Ellipse(e) => {
+                let (long, short) = (e.a.max(e.b), e.a.min(e.b));
+                if long / (short * short) * e.properties().perimeter > R::TAU * R::TWO {
+                    let first = if e.a > e.b { R::zero() } else { R::PI * R::HALF };
+                    visit(first);
+                    visit(first + R::PI);
+                }
+            }
+            Kind::Polygon { .. } => {
+                if let Curve::Polygon(polygon) = self.kind.curve(store) {
+                    polygon.ladders().for_each(|l| visit(l.t));
+                }
+            }
+            Kind::Fourier { .. } => self.each_bend(store, |l| visit(l.t)),
+        }
+    }
+
+    fn each_bend(&self, store: &[R], visit: impl FnMut(Ladder<R>)) {
+        let curve = self.kind.curve(store);
+        let step = R::TAU / R::count(self.samples.max(1));
+        let perimeter =
+            (0..self.samples).fold(R::zero(), |p, i| p + cabs(curve.jet_real(step * R::count(i))[1]) * step);
+        bends(&curve, self.samples, perimeter).for_each(visit);
+    }
+}
+
 impl<R: Real> Shape<'_, R> {
     fn sizes(&self) -> Result<Sizes> {
         let polygon = |vertices: &[[R; 2]], radius: Option<R>| {
@@ -84,17 +137,23 @@ impl<R: Real> Shape<'_, R> {
             Ok(Sizes {
                 own: n.saturating_mul(CORNER),
                 rungs: polygon::rungs(turned(vertices, false), n, radius)?,
+                ladders: n,
+                tips: n,
                 scratch: samples.saturating_mul(2).saturating_add(boxes_len(samples)),
             })
         };
         match *self {
-            Shape::Ellipse { .. } => Ok(Sizes { own: 0, rungs: 0, scratch: 0 }),
-            Shape::Star { .. } => Ok(Sizes { own: 6, rungs: 0, scratch: 0 }),
+            Shape::Ellipse { .. } => Ok(Sizes { own: 0, rungs: 0, ladders: 0, tips: 2, scratch: 0 }),
+            Shape::Star { lobes, .. } => {
+                Ok(Sizes { own: 6, rungs: 0, ladders: 0, tips: lobes.min(MOST_TIPS), scratch: 0 })
+            }
             Shape::Rectangle { width, height, radius } => polygon(&rectangle(width, height), radius),
             Shape::Polygon { vertices, radius } => polygon(vertices, radius),
             Shape::Curve { points } => Ok(Sizes {
                 own: through_points::coefficients_len(points.len()),
                 rungs: points.len().saturating_mul(BEND_RUNGS),
+                ladders: points.len(),
+                tips: points.len().min(MOST_TIPS),
                 scratch: through_points::Memory::<R>::len(&points.len()).ok_or(Status::SizeOverflow)?,
             }),
         }
@@ -115,6 +174,11 @@ impl<R: Real> Shape<'_, R> {
         if scratch < usize::MAX / 64 { Ok(scratch) } else { Err(Status::SizeOverflow.into()) }
     }
 
+    /// Number of permanent ladders and of tips or corners, at most.
+    pub(crate) fn ladder_counts(&self) -> Result<(usize, usize)> {
+        self.sizes().map(|s| (s.ladders, s.tips))
+    }
+
     /// Validates the shape and writes its curve and grading into `store`.
     ///
     /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
@@ -131,7 +195,9 @@ impl<R: Real> Shape<'_, R> {
             return Err(Status::MemoryTooSmall.into());
         }
         match *self {
-            Shape::Ellipse { a, b } => Ok((Outline { kind: Kind::Ellipse(Ellipse { a, b }), rungs: 0 }, Status::Ok)),
+            Shape::Ellipse { a, b } => {
+                Ok((Outline { kind: Kind::Ellipse(Ellipse { a, b }), rungs: 0, samples: 0 }, Status::Ok))
+            }
             Shape::Star { radius, amplitude, lobes } => {
                 let half = radius * amplitude * R::HALF;
                 for (k, x) in [half, radius, half].into_iter().enumerate() {
@@ -139,7 +205,7 @@ impl<R: Real> Shape<'_, R> {
                     put(store, 2 * k + 1, R::zero());
                 }
                 let kind = Kind::Fourier { centre: R::one(), stride: R::count(lobes), down: 1, count: 3 };
-                Ok((Outline { kind, rungs: 0 }, Status::Ok))
+                Ok((Outline { kind, rungs: 0, samples: lobes.saturating_mul(32) }, Status::Ok))
             }
             Shape::Rectangle { width, height, radius } => {
                 let perimeter = polygon::write_rectangle(width, height, radius, store)?;
@@ -160,7 +226,7 @@ impl<R: Real> Shape<'_, R> {
                 let modes = through_points::write(&p, n, &mut memory, store)?;
                 let kind = Kind::Fourier { centre: R::one(), stride: R::one(), down: modes.down, count: modes.count };
                 let samples = through_points::samples(n);
-                let outline = grade_bends(kind, samples, sizes.rungs, memory.samples, store)?;
+                let outline = grade_bends(kind, samples, n, sizes.rungs, memory.samples, store)?;
                 if let Some((_, j)) = crossing(memory.samples, memory.boxes, R::zero(), R::lit(TOUCH)) {
                     let at = through_points::point_before(memory.knots, n, j);
                     let own = if clockwise && at > 0 { n.saturating_sub(at) } else { at };
@@ -254,6 +320,7 @@ fn points_given<R: Real>(all: &'static str, one: &'static str, points: &[[R; 2]]
 fn grade_bends<R: Real>(
     kind: Kind<R>,
     samples: usize,
+    points: usize,
     most: usize,
     positions: &mut [R],
     store: &mut [R],
@@ -269,13 +336,13 @@ fn grade_bends<R: Real>(
         put(positions, 2 * i + 1, x.im);
     }
     let mut room = most;
-    let ladders = bends(&curve, samples, perimeter).take_while(move |ladder| {
+    let ladders = bends(&curve, samples, perimeter).take(points).take_while(move |ladder| {
         let fits = ladder.count() <= room;
         room = room.saturating_sub(ladder.count());
         fits
     });
     let rungs = write_grading(ladders, graded)?;
-    Ok(Outline { kind, rungs })
+    Ok(Outline { kind, rungs, samples })
 }
 
 /// Grades a polygon at its corners and makes sure that rounding has not tangled it.
@@ -292,7 +359,7 @@ fn grade_corners<R: Real>(
         return Err(Status::Internal.into());
     };
     let rungs = write_grading(curve.ladders(), graded)?;
-    let outline = Outline { kind, rungs };
+    let outline = Outline { kind, rungs, samples: 0 };
     let samples = n.max(4) * PER_CORNER;
     let (positions, boxes) = scratch.split_at_mut_checked(2 * samples).ok_or(Status::MemoryTooSmall)?;
     let mut points = positions.as_chunks_mut::<2>().0.iter_mut();

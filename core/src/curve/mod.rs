@@ -23,7 +23,7 @@ pub use ellipse::Ellipse;
 pub use fourier::Fourier;
 pub use polygon::{Polygon, SHARP};
 
-use crate::grading::Grading;
+use crate::grading::{Grading, Ladder, write_grading};
 use crate::scalar::{Complex, Real, cabs, complex, dot};
 use crate::status::Result;
 use crate::workspace::part;
@@ -119,12 +119,14 @@ impl<R: Real> Kind<R> {
 pub struct Outline<R> {
     kind: Kind<R>,
     rungs: usize,
+    /// Samples that find the bends of a Fourier sum.
+    samples: usize,
 }
 
 impl<R: Real> Default for Outline<R> {
     /// The unit circle.
     fn default() -> Self {
-        Outline { kind: Kind::Ellipse(Ellipse { a: R::one(), b: R::one() }), rungs: 0 }
+        Outline { kind: Kind::Ellipse(Ellipse { a: R::one(), b: R::one() }), rungs: 0, samples: 0 }
     }
 }
 
@@ -134,6 +136,13 @@ impl<R: Real> Outline<R> {
         let graded = store.get(self.kind.len()..).unwrap_or(&[]);
         let grading = if self.rungs == 0 { Grading::uniform() } else { Grading::read(graded, self.rungs) };
         OutlineView { curve: self.kind.curve(store), grading }
+    }
+
+    /// Replaces the grading by that of these ladders. Errors: `MemoryTooSmall`.
+    pub(crate) fn regrade(&mut self, ladders: impl Iterator<Item = Ladder<R>>, store: &mut [R]) -> Result<()> {
+        let graded = store.get_mut(self.kind.len()..).unwrap_or(&mut []);
+        self.rungs = write_grading(ladders, graded)?;
+        Ok(())
     }
 }
 
@@ -175,7 +184,7 @@ impl<R: Real> OutlineView<'_, R> {
     }
 
     /// Calls `visit` with `n` nodes in turn, each search started at the node before.
-    fn walk(&self, n: usize, mut visit: impl FnMut(Node<R>)) -> Result<()> {
+    pub(crate) fn walk(&self, n: usize, mut visit: impl FnMut(Node<R>)) -> Result<()> {
         let step = R::TAU / R::count(n);
         let mut t = R::zero();
         for k in 0..n {

@@ -137,8 +137,11 @@ impl<'a, R: Real> Polygon<'a, R> {
             let (last, side) = (before, end - c.arclength);
             before = side;
             let turn = turn(c.direction - c.jump, c.direction).abs();
-            let ladder =
-                Ladder { t: c.arclength * R::TAU / p, beta: scale(c.r, turn, p), top: side.max(last) * R::TAU / p };
+            let ladder = Ladder {
+                t: c.arclength * R::TAU / p,
+                beta: scale(c.r, turn, p),
+                top: (side.max(last) * R::TAU / p).min(R::lit(TOP)),
+            };
             // A corner that does not turn leaves no trace in the flow.
             (turn * turn > R::EPSILON).then_some(ladder)
         })

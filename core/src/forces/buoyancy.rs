@@ -2,8 +2,8 @@
 //! the centre of mass to the area centroid. O(links).
 
 use crate::articulation::twist_of;
+use crate::configuration::Poses;
 use crate::model::Model;
-use crate::nystrom::Poses;
 use crate::scalar::Real;
 use crate::workspace::{add, at};
 

@@ -12,8 +12,7 @@ use crate::boundary::{BoundaryRecord, Core, Nodes};
 use crate::christoffel::{
     Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates,
 };
-use crate::model::Model;
-use crate::nystrom::{Poses, targets};
+use crate::configuration::{Configuration, targets};
 use crate::potentials::{BoundarySystem, flux_moments, to_world};
 use crate::scalar::{Complex, Real, cln, complex, csqrt, dot, perp};
 use crate::workspace::{add, at, axpy, inner, part, part_mut};
@@ -59,24 +58,21 @@ fn normals<'a, R: Real>(record: &BoundaryRecord<R>, nodes: &'a Nodes<'a, R>) -> 
 }
 
 /// Boundaries that carry circulation, with their strengths γ/2π.
-fn cores<'a, R: Real>(model: &Model<'a, R>) -> impl Iterator<Item = (usize, &'a BoundaryRecord<R>, R)> + use<'a, R> {
-    model.each_boundary().filter(|(_, b, _)| b.circulation != R::zero()).map(|(i, b, _)| (i, b, b.circulation / R::TAU))
+fn cores<'a, R: Real>(
+    c: &Configuration<'a, R>,
+) -> impl Iterator<Item = (usize, &'a BoundaryRecord<R>, R)> + use<'a, R> {
+    c.each_boundary().filter(|(_, b, _)| b.circulation != R::zero()).map(|(i, b, _)| (i, b, b.circulation / R::TAU))
 }
 
 /// Sets up the circulatory flow: Ψ, dn, β, φ. One solve.
-pub(crate) fn solve<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
-    system: &BoundarySystem<'_, R>,
-    flow: &mut Flow<'_, R>,
-) {
+pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) {
     flow.stream.fill(R::zero());
     flow.normal.fill(R::zero());
     flow.tangential.fill(R::zero());
-    for (i, b, strength) in cores(model) {
-        for (m, target, nodes) in model.each_boundary() {
-            let turn = poses.get(i).unturned(poses.get(m).turn);
-            let values = targets(&nodes, poses.get(m), poses.get(i)).zip(normals(target, &nodes));
+    for (i, b, strength) in cores(c) {
+        for (m, target, nodes) in c.each_boundary() {
+            let turn = c.pose(i).unturned(c.pose(m).turn);
+            let values = targets(&nodes, c.pose(m), c.pose(i)).zip(normals(target, &nodes));
             for (k, (z, n)) in values.enumerate() {
                 let [l, d, _] = core_flow(&b.core, z);
                 let slope = turn * n * d;
@@ -114,15 +110,15 @@ pub(crate) fn energy<R: Real>(flow: &Flow<'_, R>) -> R {
 }
 
 /// `out = P`, the impulse of the circulatory flow by generalized coordinate, world directions.
-pub(crate) fn impulse<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, flow: &Flow<'_, R>, out: &mut [R]) {
-    impulse_of(model, flow.potential, flow.normal, out);
-    to_world(model, poses, R::one(), out);
+pub(crate) fn impulse<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, out: &mut [R]) {
+    impulse_of(c, flow.potential, flow.normal, out);
+    to_world(c, R::one(), out);
 }
 
 /// Bᵀφ − Sᵀdn in link frames.
-fn impulse_of<R: Real>(model: &Model<'_, R>, potential: &[R], normal: &[R], out: &mut [R]) {
-    flux_moments(model, potential, out);
-    for (_, b, nodes) in model.each_boundary() {
+fn impulse_of<R: Real>(c: &Configuration<'_, R>, potential: &[R], normal: &[R], out: &mut [R]) {
+    flux_moments(c, potential, out);
+    for (_, b, nodes) in c.each_boundary() {
         let Some(link) = b.link else { continue };
         let (mut linear, mut angular) = (Complex::default(), R::zero());
         for (x, n) in nodes.points().zip(part(normal, b.first, b.nodes)) {
@@ -137,19 +133,18 @@ fn impulse_of<R: Real>(model: &Model<'_, R>, potential: &[R], normal: &[R], out:
 /// Adds the direct derivatives of the cores' data by the poses: for weights `c` (on L') and `e` (on νL'') given per node of
 /// boundary m by `weights(m, k)`, α = q (c L' + e ν L'') conj(turn_i), R = Re Σ q e iν L'.
 fn add_core_gradient<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     scale: R,
     weights: impl Fn(&BoundaryRecord<R>, usize, Complex<R>) -> (R, Complex<R>),
     out: &mut [R],
 ) {
-    for (i, b, strength) in cores(model) {
-        let pose = poses.get(i);
-        for (m, target, nodes) in model.each_boundary() {
+    for (i, b, strength) in cores(c) {
+        let pose = c.pose(i);
+        for (m, target, nodes) in c.each_boundary() {
             if m == i || (b.link.is_none() && target.link.is_none()) {
                 continue;
             }
-            let own = poses.get(m);
+            let own = c.pose(m);
             let (turn, shift) = (pose.unturned(own.turn), own.origin - pose.origin);
             let (mut sum, mut about_target, mut about_core, mut spin) =
                 (Complex::<R>::default(), R::zero(), R::zero(), R::zero());
@@ -167,16 +162,15 @@ fn add_core_gradient<R: Real>(
                 spin -= strength * (e * nu * d).im;
             }
             let linear = complex(sum.re, -sum.im) * scale;
-            add_three(model, m, linear, (about_target + spin) * scale, out);
-            add_three(model, i, -linear, -(about_core + spin) * scale, out);
+            add_three(c, m, linear, (about_target + spin) * scale, out);
+            add_three(c, i, -linear, -(about_core + spin) * scale, out);
         }
     }
 }
 
 /// Adds ∂T_c/∂q (scaled). One transposed solve, one pass over the pairs.
 pub(crate) fn add_energy_gradient<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     system: &BoundarySystem<'_, R>,
     flow: &mut Flow<'_, R>,
     s: &mut PairScratch<'_, R>,
@@ -186,14 +180,13 @@ pub(crate) fn add_energy_gradient<R: Real>(
     crate::workspace::copy(flow.adjoint, flow.tangential);
     system.factors().solve_transposed(flow.adjoint);
     let adjoint = &*flow.adjoint;
-    each_induced(model, poses, flow.potential, flow.stream, s, |pair| {
-        add_pose_gradient(&pair, model, poses, part(adjoint, pair.first, pair.len), -R::HALF * scale, out);
+    each_induced(c, flow.potential, flow.stream, s, |pair| {
+        add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -R::HALF * scale, out);
     });
     multiply_transposed(system.regular, adjoint, flow.spare);
     let (spare, flow) = (&*flow.spare, &*flow);
     add_core_gradient(
-        model,
-        poses,
+        c,
         scale,
         |m, k, _| {
             let i = m.first + k;
@@ -208,8 +201,7 @@ pub(crate) fn add_energy_gradient<R: Real>(
 /// velocities in link frames, `work` scratch of three reals per link. One solve, one pass.
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn add_gyroscopic_force<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
+    c: &Configuration<'_, R>,
     system: &BoundarySystem<'_, R>,
     flow: &mut Flow<'_, R>,
     s: &mut PairScratch<'_, R>,
@@ -220,8 +212,8 @@ pub(crate) fn add_gyroscopic_force<R: Real>(
     scale: R,
     out: &mut [R],
 ) {
-    impulse(model, poses, flow, work);
-    for (_, b, _) in model.each_boundary() {
+    impulse(c, flow, work);
+    for (_, b, _) in c.each_boundary() {
         let Some(link) = b.link else { continue };
         let (u, p) = (twist_of(qd, link), twist_of(work, link));
         // γ J v, the turning of P, and −J P.
@@ -235,9 +227,9 @@ pub(crate) fn add_gyroscopic_force<R: Real>(
     // ∂_a(q̇·P): Im λᵀ dG w with w = φ + iΨ, and in the same pass the rate Im(ż D w) of φ's equation.
     let rate = &mut *flow.spare;
     rate.fill(R::zero());
-    each_induced(model, poses, flow.potential, flow.stream, s, |pair: Induced<'_, R>| {
-        add_pose_gradient(&pair, model, poses, part(adjoint, pair.first, pair.len), -scale, out);
-        let rates = relative_rates(&pair, model, poses, qd);
+    each_induced(c, flow.potential, flow.stream, s, |pair: Induced<'_, R>| {
+        add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -scale, out);
+        let rates = relative_rates(&pair, c, qd);
         for ((a, zd), (hx, hy)) in
             part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(pair.hx.iter().zip(pair.hy))
         {
@@ -247,8 +239,7 @@ pub(crate) fn add_gyroscopic_force<R: Real>(
     multiply_transposed(system.regular, adjoint, flow.second);
     let second = &*flow.second;
     add_core_gradient(
-        model,
-        poses,
+        c,
         -scale,
         |m, k, x| {
             let e = match m.link {
@@ -264,28 +255,28 @@ pub(crate) fn add_gyroscopic_force<R: Real>(
     );
     // dP/dt beyond its turning: φ̇ and the rates of the cores' data.
     let (stream_rate, normal_rate) = (&mut *flow.second, &mut *flow.adjoint);
-    data_rates(model, poses, qd, stream_rate, normal_rate);
+    data_rates(c, qd, stream_rate, normal_rate);
     for (column, x) in system.regular.chunks_exact(system.unknowns.max(1)).zip(&*stream_rate) {
         axpy(rate, *x, column);
     }
     system.factors().solve(rate);
-    impulse_of(model, rate, normal_rate, work);
-    to_world(model, poses, scale, work);
+    impulse_of(c, rate, normal_rate, work);
+    to_world(c, scale, work);
     axpy(out, R::one(), work);
 }
 
 /// Ψ̇ = Σ q Re(L' ż) and dṅ = Σ q Re(ν L'' ż + i (ω_m − ω_i) ν L').
-fn data_rates<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, qd: &[R], stream: &mut [R], normal: &mut [R]) {
+fn data_rates<R: Real>(c: &Configuration<'_, R>, qd: &[R], stream: &mut [R], normal: &mut [R]) {
     stream.fill(R::zero());
     normal.fill(R::zero());
-    for (i, b, strength) in cores(model) {
-        for (m, target, nodes) in model.each_boundary() {
+    for (i, b, strength) in cores(c) {
+        for (m, target, nodes) in c.each_boundary() {
             if m == i {
                 continue;
             }
-            let (pose, own) = (poses.get(i), poses.get(m));
+            let (pose, own) = (c.pose(i), c.pose(m));
             let (turn, shift) = (pose.unturned(own.turn), own.origin - pose.origin);
-            let (vm, vi) = (boundary_twist(model, qd, m), boundary_twist(model, qd, i));
+            let (vm, vi) = (boundary_twist(c, qd, m), boundary_twist(c, qd, i));
             let values = nodes.points().zip(normals(target, &nodes));
             for (k, (x, n)) in values.enumerate() {
                 let arm = own.turned(x);

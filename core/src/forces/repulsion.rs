@@ -3,8 +3,7 @@
 //! ∂V/∂q_a = −α ε Σ ∬ |x − x'|^(−α−2) (x − x')·w_a ds ds'. (The printed (5.2) is wrong: docs/physics.md.) O(N²).
 
 use crate::christoffel::add_three;
-use crate::model::Model;
-use crate::nystrom::{Poses, targets};
+use crate::configuration::{Configuration, targets};
 use crate::scalar::{Complex, Real, cabs};
 use crate::scene::Repulsion;
 
@@ -21,22 +20,17 @@ fn inverse_power<R: Real>(square: R, alpha: R) -> R {
 
 /// Visits every pair once: calls back with the sums over its nodes of |d|^(−α), and of |d|^(−α−2) d (and its moments about
 /// both origins), d from the second boundary to the first, in world directions.
-fn each_pair<R: Real>(
-    model: &Model<'_, R>,
-    poses: Poses<'_, R>,
-    alpha: R,
-    mut visit: impl FnMut(usize, usize, R, Complex<R>, R, R),
-) {
-    for (i, a, a_nodes) in model.each_boundary() {
-        for (j, b, b_nodes) in model.each_boundary().skip(i + 1) {
+fn each_pair<R: Real>(c: &Configuration<'_, R>, alpha: R, mut visit: impl FnMut(usize, usize, R, Complex<R>, R, R)) {
+    for (i, a, a_nodes) in c.each_boundary() {
+        for (j, b, b_nodes) in c.each_boundary().skip(i + 1) {
             if a.link.is_none() && b.link.is_none() {
                 continue;
             }
-            let source = poses.get(j);
+            let source = c.pose(j);
             let (mut energy, mut force, mut moment_a, mut moment_b) =
                 (R::zero(), Complex::default(), R::zero(), R::zero());
-            let shift = source.unturned(poses.get(i).origin - source.origin);
-            for (z, d) in targets(&a_nodes, poses.get(i), source).zip(a_nodes.tangents()) {
+            let shift = source.unturned(c.pose(i).origin - source.origin);
+            for (z, d) in targets(&a_nodes, c.pose(i), source).zip(a_nodes.tangents()) {
                 let (mut e, mut f, mut m) = (R::zero(), Complex::default(), R::zero());
                 for (x, dx) in b_nodes.points().zip(b_nodes.tangents()) {
                     let arm = z - x;
@@ -60,17 +54,17 @@ fn each_pair<R: Real>(
 }
 
 /// V, J/m.
-pub(crate) fn energy<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, law: Repulsion<R>) -> R {
+pub(crate) fn energy<R: Real>(c: &Configuration<'_, R>, law: Repulsion<R>) -> R {
     let mut sum = R::zero();
-    each_pair(model, poses, law.alpha, |_, _, e, _, _, _| sum += e);
+    each_pair(c, law.alpha, |_, _, e, _, _, _| sum += e);
     sum * law.epsilon
 }
 
 /// Adds ∂V/∂q.
-pub(crate) fn add_gradient<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, law: Repulsion<R>, out: &mut [R]) {
+pub(crate) fn add_gradient<R: Real>(c: &Configuration<'_, R>, law: Repulsion<R>, out: &mut [R]) {
     let scale = -law.alpha * law.epsilon;
-    each_pair(model, poses, law.alpha, |i, j, _, force, moment_i, moment_j| {
-        add_three(model, i, force * scale, moment_i * scale, out);
-        add_three(model, j, -force * scale, -moment_j * scale, out);
+    each_pair(c, law.alpha, |i, j, _, force, moment_i, moment_j| {
+        add_three(c, i, force * scale, moment_i * scale, out);
+        add_three(c, j, -force * scale, -moment_j * scale, out);
     });
 }

@@ -1,23 +1,31 @@
 //! Adams–Bashforth–Moulton of order 4 with a fixed step.
 
 use super::rk4::later_stages;
-use super::{Counters, System, all_finite, check_step, evaluate};
+use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
 use crate::scalar::Real;
 use crate::status::{Result, Status};
-use crate::workspace::{buffers, copy};
+use crate::workspace::{buffers, copy, part};
 
 /// Predicts by Adams–Bashforth 4, evaluates, corrects by Adams–Moulton 4 and evaluates (PECE): two
 /// evaluations a step, local error O(h⁵). The first three steps are Runge–Kutta 4.
 #[derive(Clone, Copy, Debug)]
 pub struct Abm4<R> {
     step: R,
+    /// Has a step been made since the start or [`Abm4::reset`]?
+    continues: bool,
     /// Number of earlier rates that are known, at most 3.
     known: usize,
+    /// Is there an estimate of the last step's error?
+    estimated: bool,
     counters: Counters,
 }
 
 buffers! {
     struct Buffers(dim: usize) {
+        /// Estimated error of the last step.
+        error: *dim,
+        /// The part of the state that it cannot hold.
+        rest: *dim,
         /// Rate at the present state.
         rate: *dim,
         /// Rates one, two and three steps ago.
@@ -35,7 +43,7 @@ impl<R: Real> Default for Abm4<R> {
 impl<R: Real> Abm4<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Abm4 { step: R::zero(), known: 0, counters: Counters::default() }
+        Abm4 { step: R::zero(), continues: false, known: 0, estimated: false, counters: Counters::default() }
     }
 
     /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
@@ -51,7 +59,13 @@ impl<R: Real> Abm4<R> {
     /// Forgets the past rates: to be called when the state was changed from outside or the right-hand
     /// side jumped. The next three steps are Runge–Kutta again.
     pub fn reset(&mut self) {
-        self.known = 0;
+        (self.known, self.continues, self.estimated) = (0, false, false);
+    }
+
+    /// Estimated local error of the last step, unknown by unknown, by Milne's device: 19/270 of the difference
+    /// of corrector and predictor. `None` after a Runge–Kutta step.
+    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
+        self.estimated.then(|| part(work, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative. A step that differs from the last one
@@ -71,6 +85,9 @@ impl<R: Real> Abm4<R> {
         check_step(system, t, h, y)?;
         let b = Buffers::split(&y.len(), work)?;
         let known = if h == self.step { self.known } else { 0 };
+        if !self.continues {
+            b.rest.fill(R::zero());
+        }
         // The second evaluation of PECE, at the corrected state, is made when the next step begins.
         evaluate(system, &mut self.counters, t, y, b.rate)?;
         if known < 3 {
@@ -80,23 +97,27 @@ impl<R: Real> Abm4<R> {
         } else {
             let h24 = h / R::lit(24.0);
             let past = || b.rate.iter().zip(&*b.past1).zip(&*b.past2).zip(&*b.past3);
-            for ((p, y), (((f0, f1), f2), f3)) in b.trial.iter_mut().zip(&*y).zip(past()) {
-                let bashforth = (R::lit(55.0) * *f0 - R::lit(59.0) * *f1) + (R::lit(37.0) * *f2 - R::lit(9.0) * *f3);
-                *p = *y + h24 * bashforth;
-            }
-            evaluate(system, &mut self.counters, t + h, b.trial, b.trial_rate)?;
-            for (((c, y), f), (((f0, f1), f2), _)) in b.trial.iter_mut().zip(&*y).zip(&*b.trial_rate).zip(past()) {
-                let moulton = (R::lit(9.0) * *f + R::lit(19.0) * *f0) + (*f2 - R::lit(5.0) * *f1);
-                *c = *y + h24 * moulton;
+            for (((p, y), sum), (((f0, f1), f2), f3)) in b.trial.iter_mut().zip(&*y).zip(&mut *b.sum).zip(past()) {
+                *sum = h24 * ((R::lit(55.0) * *f0 - R::lit(59.0) * *f1) + (R::lit(37.0) * *f2 - R::lit(9.0) * *f3));
+                *p = *y + *sum;
             }
             all_finite(b.trial, Status::NonFiniteState, "state")?;
+            evaluate(system, &mut self.counters, t + h, b.trial, b.trial_rate)?;
+            let milne = R::lit(19.0 / 270.0);
+            for (((e, sum), f), (((f0, f1), f2), _)) in
+                b.error.iter_mut().zip(&mut *b.sum).zip(&*b.trial_rate).zip(past())
+            {
+                let moulton = h24 * ((R::lit(9.0) * *f + R::lit(19.0) * *f0) + (*f2 - R::lit(5.0) * *f1));
+                *e = milne * (moulton - *sum);
+                *sum = moulton;
+            }
         }
-        copy(y, b.trial);
+        add_increment(y, b.rest, b.sum)?;
         copy(b.past3, b.past2);
         copy(b.past2, b.past1);
         copy(b.past1, b.rate);
         self.known = if known < 3 { known + 1 } else { 3 };
-        self.step = h;
+        (self.step, self.continues, self.estimated) = (h, true, known == 3);
         self.counters.steps += 1;
         Ok(())
     }

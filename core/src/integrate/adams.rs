@@ -2,7 +2,7 @@
 
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
-use super::{Counters, System, all_finite, evaluate, finite, same_length};
+use super::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
 use crate::scalar::Real;
 use crate::status::{Error, Result, Status};
 use crate::workspace::{buffers, copy, part};
@@ -51,6 +51,8 @@ buffers! {
         /// The part of the state that `state` cannot hold.
         rest: *dim,
         trial: *dim, trial_rest: *dim, trial_rate: *dim,
+        /// Estimated error of the last trial step.
+        error: *dim,
     }
 }
 
@@ -171,6 +173,13 @@ impl<R: Real> Adams<R> {
     /// Order k of the last step's predictor (its result is of order k + 1); 0 after a start.
     pub fn last_order(&self) -> usize {
         self.last_order
+    }
+
+    /// Estimated local error of the last step, unknown by unknown: that of order k, though the result is of
+    /// order k + 1. `None` after a start; meaningless after a step that failed.
+    pub fn error<'w>(&self, work: &'w [R]) -> Option<&'w [R]> {
+        let before = self.dim.saturating_mul(COLUMNS + 6);
+        (self.last_order > 0).then(|| part(work, before, self.dim))
     }
 
     /// What has been done since the integrator was made.
@@ -335,8 +344,8 @@ impl<R: Real> Adams<R> {
         // The largest weighted differences of orders k + 1, k, k − 1.
         let (mut this, mut lower, mut lowest) = (R::zero(), R::zero(), R::zero());
         let known = b.state.iter().zip(&*b.rest).zip(columns(b.history)).zip(&*b.trial_rate);
-        let corrected = b.trial.iter_mut().zip(b.trial_rest.iter_mut());
-        for ((((y, rest), column), f), (new, new_rest)) in known.zip(corrected) {
+        let corrected = b.trial.iter_mut().zip(b.trial_rest.iter_mut()).zip(b.error.iter_mut());
+        for ((((y, rest), column), f), ((new, new_rest), error)) in known.zip(corrected) {
             let predicted = formula.predicted(column);
             let jump = *f - predicted.rate;
             let scale = R::one() / self.weight(*y);
@@ -344,6 +353,7 @@ impl<R: Real> Adams<R> {
             lower = lower.max((predicted.last + jump).abs() * scale);
             lowest = lowest.max((predicted.before_last + jump).abs() * scale);
             let increment = h * (predicted.slope + formula.correct * jump) + *rest;
+            *error = h * formula.error * jump;
             *new = *y + increment;
             *new_rest = increment - (*new - *y);
         }
@@ -387,11 +397,6 @@ impl<R: Real> Adams<R> {
         };
         self.proposed = factor * formula.step.abs();
     }
-}
-
-/// Does the error belong to the trial state, so that a shorter step may succeed?
-fn recoverable(error: &Error) -> bool {
-    matches!(error.status, Status::Contact | Status::Singular | Status::NonFiniteState)
 }
 
 fn columns<R>(history: &[R]) -> core::slice::Iter<'_, [R; COLUMNS]> {

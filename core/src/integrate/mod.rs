@@ -1,9 +1,13 @@
-//! Explicit integrators of ordinary differential equations `y' = f(t, y)` in memory given by the caller.
+//! Integrators of ordinary differential equations `y' = f(t, y)` in memory given by the caller.
 //!
 //! - [`rk4`]: the classical Runge–Kutta step of order 4, fixed step, four evaluations.
 //! - [`abm4`]: Adams–Bashforth–Moulton of order 4, fixed step, two evaluations.
 //! - [`adams`]: Adams–Bashforth–Moulton of variable step and order 1–12 (the method of Matlab's
 //!   `ode113`), with error control and dense output, two evaluations.
+//! - [`gauss6`]: the implicit Runge–Kutta method of Gauss and Legendre of order 6, fixed step, symmetric in
+//!   time, about ten to twenty evaluations.
+//!
+//! Every method sums the state with compensation, so that many short steps do not add up their rounding.
 //!
 //! The integrators are small `Copy` values; everything that grows with the dimension lies in a work slice
 //! of `work_len(dim)` numbers, which belongs to one integrator from one call to the next.
@@ -15,12 +19,14 @@ pub mod abm4;
 pub mod adams;
 mod control;
 mod formula;
+pub mod gauss6;
 pub mod rk4;
 #[cfg(test)]
 mod tests;
 
 pub use abm4::Abm4;
 pub use adams::Adams;
+pub use gauss6::Gauss6;
 pub use rk4::Rk4;
 
 /// The right-hand side of `y' = f(t, y)`.
@@ -87,4 +93,24 @@ fn check_step<R: Real, S: System<R> + ?Sized>(system: &S, t: R, h: R, y: &[R]) -
 /// Refuses a buffer of the wrong length.
 fn same_length(want: usize, got: usize) -> Result<()> {
     if want == got { Ok(()) } else { Err(Error::new(Status::Length).of("length", got as f64)) }
+}
+
+/// `y += increment`, where `rest` keeps what `y` cannot hold. A state that is not finite is refused, and
+/// nothing changed.
+fn add_increment<R: Real>(y: &mut [R], rest: &mut [R], increment: &[R]) -> Result<()> {
+    for ((y, rest), d) in y.iter().zip(&*rest).zip(increment) {
+        all_finite(&[*y + (*d + *rest)], Status::NonFiniteState, "state")?;
+    }
+    for ((y, rest), d) in y.iter_mut().zip(rest).zip(increment) {
+        let d = *d + *rest;
+        let new = *y + d;
+        *rest = d - (new - *y);
+        *y = new;
+    }
+    Ok(())
+}
+
+/// Does the error belong to the trial state, so that another one may succeed?
+fn recoverable(error: &Error) -> bool {
+    matches!(error.status, Status::Contact | Status::Singular | Status::NonFiniteState)
 }

@@ -1,29 +1,61 @@
 //! The classical Runge–Kutta method of order 4.
 
-use super::{Counters, System, all_finite, check_step, evaluate};
+use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
 use crate::scalar::Real;
 use crate::status::{Result, Status};
-use crate::workspace::{axpy, buffers, copy};
+use crate::workspace::{axpy, buffers, copy, part};
 
 /// The classical Runge–Kutta method: four evaluations a step, local error O(h⁵).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Rk4 {
+///
+/// The error of a step is estimated when the next one begins and the rate at its end is known: by the
+/// difference from the Adams–Moulton formula of order 7, through the rates of seven equal steps. It costs no
+/// evaluation, and is exact as the step tends to 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Rk4<R> {
+    step: R,
+    /// Has a step been made since the start or [`Rk4::reset`]?
+    continues: bool,
+    /// Number of earlier rates that are known, at most [`PAST`].
+    known: usize,
+    /// Is there an estimate of the error of the step before the last?
+    estimated: bool,
     counters: Counters,
 }
 
+/// Earlier rates that the error estimate needs.
+const PAST: usize = 6;
+/// 60480 times the weights of the Adams–Moulton formula of order 7, the newest rate first.
+const MOULTON: [f64; PAST + 1] = [19087.0, 65112.0, -46461.0, 37504.0, -20211.0, 6312.0, -863.0];
+
 buffers! {
-    struct Buffers(dim: usize) { stage: *dim, rate: *dim, sum: *dim, }
+    struct Buffers(dim: usize) {
+        /// Estimated error of the step before the last.
+        error: *dim,
+        /// The part of the state that it cannot hold.
+        rest: *dim,
+        /// What the last step added to the state.
+        increment: *dim,
+        /// Rates at the beginning of the last steps, the newest first.
+        past: dim.saturating_mul(PAST),
+        first: *dim, stage: *dim, rate: *dim, sum: *dim,
+    }
 }
 
-impl Rk4 {
+impl<R: Real> Default for Rk4<R> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<R: Real> Rk4<R> {
     /// A new integrator.
-    pub const fn new() -> Self {
-        Rk4 { counters: Counters { evaluations: 0, steps: 0, rejected: 0 } }
+    pub fn new() -> Self {
+        Rk4 { step: R::zero(), continues: false, known: 0, estimated: false, counters: Counters::default() }
     }
 
     /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
     pub fn work_len(dim: usize) -> Option<usize> {
-        Buffers::<f64>::len(&dim)
+        Buffers::<R>::len(&dim)
     }
 
     /// What has been done so far.
@@ -31,12 +63,24 @@ impl Rk4 {
         self.counters
     }
 
+    /// Forgets the past rates and the rest of the state: to be called when the state was changed from outside
+    /// or the right-hand side jumped.
+    pub fn reset(&mut self) {
+        (self.known, self.continues, self.estimated) = (0, false, false);
+    }
+
+    /// Estimated local error of the step before the last, unknown by unknown. `None` until there were six
+    /// equal steps before it.
+    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
+        self.estimated.then(|| part(work, 0, dim))
+    }
+
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
     ///
     /// # Errors
     /// Those of the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `Length`, `MemoryTooSmall`.
     /// `y` is then as it was, bit for bit.
-    pub fn step<R: Real, S: System<R> + ?Sized>(
+    pub fn step<S: System<R> + ?Sized>(
         &mut self,
         system: &mut S,
         t: R,
@@ -45,17 +89,44 @@ impl Rk4 {
         work: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
-        let b = Buffers::split(&y.len(), work)?;
-        evaluate(system, &mut self.counters, t, y, b.rate)?;
-        copy(b.sum, b.rate);
+        let dim = y.len();
+        let b = Buffers::split(&dim, work)?;
+        let known = if h == self.step { self.known } else { 0 };
+        if !self.continues {
+            b.rest.fill(R::zero());
+        }
+        evaluate(system, &mut self.counters, t, y, b.first)?;
+        let estimated = known == PAST;
+        if estimated {
+            b.error.fill(R::zero());
+            let rates = core::iter::once(&*b.first).chain(b.past.chunks_exact(dim.max(1)));
+            for (weight, rate) in MOULTON.iter().zip(rates) {
+                axpy(b.error, R::lit(-weight / 60480.0), rate);
+            }
+            for (e, d) in b.error.iter_mut().zip(&*b.increment) {
+                *e = *d + h * *e;
+            }
+        }
+        copy(b.sum, b.first);
+        copy(b.rate, b.first);
         later_stages(system, &mut self.counters, t, h, y, b.stage, b.rate, b.sum)?;
-        copy(y, b.stage);
+        add_increment(y, b.rest, b.sum)?;
+        copy(b.increment, b.sum);
+        // One step on: every rate takes the place of the next older one.
+        for block in b.past.chunks_exact_mut(dim.max(1)) {
+            for (newer, older) in b.first.iter_mut().zip(block) {
+                core::mem::swap(newer, older);
+            }
+        }
+        self.known = if known < PAST { known + 1 } else { PAST };
+        (self.step, self.continues, self.estimated) = (h, true, estimated);
         self.counters.steps += 1;
         Ok(())
     }
 }
 
-/// The last three stages, given the first rate in both `rate` and `sum`; leaves the new state in `stage`.
+/// The last three stages, given the first rate in both `rate` and `sum`; leaves the increment of the state in
+/// `sum`.
 pub(super) fn later_stages<R: Real, S: System<R> + ?Sized>(
     system: &mut S,
     counters: &mut Counters,
@@ -70,10 +141,13 @@ pub(super) fn later_stages<R: Real, S: System<R> + ?Sized>(
     for (reach, weight) in [(half, R::TWO), (half, R::TWO), (h, R::one())] {
         copy(stage, y);
         axpy(stage, reach, rate);
+        all_finite(stage, Status::NonFiniteState, "state")?;
         evaluate(system, counters, t + reach, stage, rate)?;
         axpy(sum, weight, rate);
     }
-    copy(stage, y);
-    axpy(stage, h / R::lit(6.0), sum);
-    all_finite(stage, Status::NonFiniteState, "state")
+    let sixth = h / R::lit(6.0);
+    for s in sum.iter_mut() {
+        *s *= sixth;
+    }
+    Ok(())
 }

@@ -122,6 +122,7 @@ int main(void) {
         MUST(nekton_sim_advance(sim, to[0], &diag));
     }
     MUST(nekton_sim_copy(copy, sim, &diag));
+    MUST(nekton_sim_set_step_limit(sim, 100));
     MUST(nekton_sim_model(copy, &same));
     if (same != model) return 6;
     MUST(nekton_sim_step(sim, &diag));

@@ -10,7 +10,7 @@ fn observed_order(error: impl Fn(usize) -> f64) -> f64 {
 #[test]
 fn rk4_converges_with_order_four_at_four_evaluations() {
     let order = observed_order(|n| {
-        let (mut m, mut work, mut y) = (Rk4::new(), vec![0.0; Rk4::work_len(1).unwrap()], [0.5]);
+        let (mut m, mut work, mut y) = (Rk4::new(), vec![0.0; Rk4::<f64>::work_len(1).unwrap()], [0.5]);
         let (h, mut worst) = (4.0 / n as f64, 0.0);
         for i in 0..n {
             m.step(&mut ode(1, cosine_growth), h * i as f64, h, &mut y, &mut work).unwrap();
@@ -45,18 +45,19 @@ fn abm4_forgets_its_past_when_the_step_changes_or_is_reset() {
     let mut system = ode(1, cosine_growth);
     for reset in [false, true] {
         let h = if reset { 0.1 } else { 0.05 };
-        let (mut m, mut y, mut work) = (Abm4::new(), [0.5], vec![0.0; 7]);
+        let (mut m, mut y, mut work) = (Abm4::new(), [0.5], vec![0.0; 9]);
         for i in 0..6 {
             m.step(&mut system, 0.1 * f64::from(i), 0.1, &mut y, &mut work).unwrap();
         }
         if reset {
             m.reset();
         }
-        let (mut fresh, mut z, mut other) = (Abm4::new(), y, vec![0.0; 7]);
+        let (mut fresh, mut z, mut other) = (Abm4::new(), y, vec![0.0; 9]);
         for i in 0..6 {
             m.step(&mut system, 0.6 + h * f64::from(i), h, &mut y, &mut work).unwrap();
             fresh.step(&mut system, 0.6 + h * f64::from(i), h, &mut z, &mut other).unwrap();
-            assert_eq!(y, z);
+            // A reset forgets the rest of the compensated sum, a change of step does not.
+            assert!((y[0] - z[0]).abs() <= f64::EPSILON);
         }
     }
 }
@@ -146,7 +147,7 @@ fn single_precision_reaches_its_tolerances() {
 fn compensated_sums_keep_single_precision_over_many_short_steps() {
     // 10⁵ steps, each of whose increments loses up to 3e-8 in a plain sum.
     let mut adams = Adams::new(1e-6f32, 1e-6, Some(1e-4)).unwrap();
-    let mut work = [0.0; 40];
+    let mut work = [0.0; 42];
     adams.start(0.0, &[1.0f32, 0.0], &mut work).unwrap();
     let mut system = ode(2, |_: f32, y: &[f32], d: &mut [f32]| {
         d.copy_from_slice(&[-y[1], y[0]]);

@@ -7,6 +7,8 @@ use std::vec::Vec;
 use super::*;
 
 mod accuracy;
+mod estimates;
+mod implicit;
 mod robustness;
 
 /// A right-hand side from a closure.

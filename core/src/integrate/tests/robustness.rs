@@ -71,16 +71,16 @@ fn a_failing_right_hand_side_changes_nothing_and_the_run_may_go_on() {
             assert_eq!(snapshot(&adams, &work, 4), snapshot(&other, &elsewhere, 4));
         }
 
-        let (mut rk4, mut abm4, mut work) = (Rk4::new(), Abm4::new(), vec![0.0; 28]);
+        let (mut rk4, mut abm4, mut work) = (Rk4::new(), Abm4::new(), vec![0.0; 36]);
         let (mut y, mut z) = (y0, y0);
         for i in 0..8 {
             broken.set(true);
             let before = (y, z);
-            assert_eq!(rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 12]).unwrap_err().status, status);
+            assert_eq!(rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 52]).unwrap_err().status, status);
             assert_eq!(abm4.step(&mut system, 0.0, 0.01, &mut z, &mut work).unwrap_err().status, status);
             assert_eq!((y, z), before, "{i}");
             broken.set(false);
-            rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 12]).unwrap();
+            rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 52]).unwrap();
             abm4.step(&mut system, 0.0, 0.01, &mut z, &mut work).unwrap();
         }
         assert!(distance(&y, &ellipse(0.6, 0.08)) < 1e-6 && distance(&z, &ellipse(0.6, 0.08)) < 1e-6);
@@ -97,7 +97,7 @@ fn fixed_steps_that_fail_in_a_late_stage_leave_the_state() {
             if calls == fail_at { Err(Status::Contact.into()) } else { Ok(()) }
         });
         let mut y = [0.1];
-        assert!(Rk4::new().step(&mut system, 0.0, 0.1, &mut y, &mut [0.0; 3]).is_err());
+        assert!(Rk4::new().step(&mut system, 0.0, 0.1, &mut y, &mut [0.0; 13]).is_err());
         assert_eq!(y, [0.1]);
     }
 }
@@ -166,12 +166,13 @@ fn systems_without_unknowns_and_without_motion_reach_the_stop() {
     let mut none = ode(0, |_, _: &[f64], _: &mut [f64]| Ok(()));
     Rk4::new().step(&mut none, 0.0, 1.0, &mut [], &mut []).unwrap();
     Abm4::new().step(&mut none, 0.0, 1.0, &mut [], &mut []).unwrap();
+    Gauss6::new().step(&mut none, 0.0, 1.0, &mut [], &mut []).unwrap();
 }
 
 #[test]
 fn no_step_is_longer_than_asked() {
     let mut adams = Adams::new(1e-4, 1e-4, Some(0.03)).unwrap();
-    let mut work = [0.0; 20];
+    let mut work = [0.0; 21];
     adams.start(0.0, &[0.5], &mut work).unwrap();
     while adams.time() < 1.0 {
         adams.step(&mut ode(1, cosine_growth), 1.0, &mut work).unwrap();
@@ -194,12 +195,12 @@ fn bad_input_is_refused_by_name() {
     let status = |r: Result<()>| r.unwrap_err().status;
     assert_eq!(status(adams.start(f64::NAN, &[0.5], &mut work)), Status::NotFinite);
     assert_eq!(status(adams.start(0.0, &[f64::NAN], &mut work)), Status::NotFinite);
-    assert_eq!(status(adams.start(0.0, &[0.5], &mut [0.0; 19])), Status::MemoryTooSmall);
+    assert_eq!(status(adams.start(0.0, &[0.5], &mut [0.0; 20])), Status::MemoryTooSmall);
     assert_eq!(status(adams.step(&mut system, f64::INFINITY, &mut work)), Status::NotFinite);
-    assert_eq!(status(adams.step(&mut system, 1.0, &mut [0.0; 19])), Status::MemoryTooSmall);
+    assert_eq!(status(adams.step(&mut system, 1.0, &mut [0.0; 20])), Status::MemoryTooSmall);
     assert_eq!(status(adams.step(&mut ode(2, cosine_growth), 1.0, &mut work)), Status::Length);
     assert_eq!(status(adams.interpolate(0.0, &work, &mut [0.0; 2], &mut [0.0])), Status::Length);
-    assert_eq!(status(adams.interpolate(0.0, &[0.0; 19], &mut [0.0], &mut [0.0])), Status::MemoryTooSmall);
+    assert_eq!(status(adams.interpolate(0.0, &[0.0; 20], &mut [0.0], &mut [0.0])), Status::MemoryTooSmall);
     assert_eq!(adams.counters(), Counters::default());
     let mut y = [0.5];
     for bad in [0.0, f64::NAN, f64::INFINITY] {

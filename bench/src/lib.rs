@@ -1,0 +1,4 @@
+//! How fast nekton is: stages, whole evaluations, and both beside OpenBLAS's factorization.
+
+pub mod lapack;
+pub mod timing;

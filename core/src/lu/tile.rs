@@ -1,0 +1,377 @@
+//! The one register tile of the factorization, C ← C − A B, and the loops around it, for any vector type.
+//!
+//! Everything here is safe and inlined into the entry points of [`super::kernel`], which choose the vector type.
+//! Matrices are column-major with leading dimension `ld`.
+
+use crate::scalar::Real;
+use crate::workspace::{at, part, part_mut, put};
+
+/// Columns of a tile.
+const COLUMNS: usize = 4;
+
+/// A vector of a few rows of one column.
+pub trait Lanes<R>: Copy {
+    /// Rows.
+    const WIDTH: usize;
+    /// The same value in every row.
+    fn splat(x: R) -> Self;
+    /// The first rows of a slice, if it has them all.
+    fn load(from: &[R]) -> Option<Self>;
+    /// The first rows of a slice; 0 where it ends early.
+    fn begin(from: &[R]) -> Self;
+    /// Writes as many rows as the slice has.
+    fn store(self, to: &mut [R]);
+    /// `self − a b`.
+    fn minus_product(self, a: Self, b: Self) -> Self;
+    /// The larger of `self` and |x|, row by row; `self` where x is NaN.
+    fn max_abs(self, x: Self) -> Self;
+    /// One row.
+    fn row(self, i: usize) -> R;
+    /// The largest row.
+    fn largest(self) -> R;
+}
+
+/// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
+#[derive(Clone, Copy)]
+pub(super) struct Rows {
+    /// First row of C.
+    pub to: usize,
+    /// Rows of C.
+    pub count: usize,
+    /// First row of B.
+    pub from: usize,
+}
+
+/// C ← C − A B, where B and C are rows of the same columns `right` and do not overlap. `left` holds A's columns.
+#[inline(always)]
+pub(super) fn subtract<R: Real, V: Lanes<R>, const M: usize>(left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
+    let mut done = 0;
+    while done < rows.count {
+        let rest = rows.count - done;
+        let here = Rows { to: rows.to + done, count: rest.min(M * V::WIDTH), ..rows };
+        let a = left.get(here.to..).unwrap_or(&[]);
+        match rest.div_ceil(V::WIDTH) {
+            1 => row_of_tiles::<R, V, 1>(a, ld, here, right),
+            2 if M > 2 => row_of_tiles::<R, V, 2>(a, ld, here, right),
+            _ => row_of_tiles::<R, V, M>(a, ld, here, right),
+        }
+        done += here.count;
+    }
+}
+
+/// The tiles side by side: what they read of A stays in the first cache.
+#[inline(always)]
+fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: Rows, right: &mut [R]) {
+    let depth = a.len().div_ceil(ld.max(1));
+    if depth == 0 {
+        return;
+    }
+    let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
+    for group in groups.by_ref() {
+        let (first, second) = halves(group);
+        let ((w, x), (y, z)) = (halves(first), halves(second));
+        let ((b0, c0), (b1, c1)) = (rows.of(w, depth), rows.of(x, depth));
+        let ((b2, c2), (b3, c3)) = (rows.of(y, depth), rows.of(z, depth));
+        tile::<R, V, M>(a, ld, [b0, b1, b2, b3], [c0, c1, c2, c3]);
+    }
+    for column in groups.into_remainder().chunks_mut(ld.max(1)) {
+        let (b, c) = rows.of(column, depth);
+        tile_of_one::<R, V, M>(a, ld, b, c);
+    }
+}
+
+#[inline(always)]
+fn halves<R>(columns: &mut [R]) -> (&mut [R], &mut [R]) {
+    columns.split_at_mut_checked(columns.len() / 2).unwrap_or((&mut [], &mut []))
+}
+
+impl Rows {
+    /// B's and C's part of a column.
+    #[inline(always)]
+    fn of<R>(self, column: &mut [R], depth: usize) -> (&[R], &mut [R]) {
+        let Some((upper, lower)) = column.split_at_mut_checked(self.to.max(self.from)) else { return (&[], &mut []) };
+        if self.to < self.from {
+            (part(lower, 0, depth), part_mut(upper, self.to, self.count))
+        } else {
+            (part(upper, self.from, depth), part_mut(lower, 0, self.count))
+        }
+    }
+}
+
+/// One tile of `M` vectors of rows by four columns: its columns minus A B. `a` begins at the tile's first row.
+#[inline(always)]
+fn tile<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: [&[R]; COLUMNS], c: [&mut [R]; COLUMNS]) {
+    let [c0, c1, c2, c3] = c;
+    let mut sums = [begin(c0), begin(c1), begin(c2), begin(c3)];
+    let [b0, b1, b2, b3] = b;
+    let mut rest = a;
+    for (((b0, b1), b2), b3) in b0.iter().zip(b1).zip(b2).zip(b3) {
+        let Some(rows) = load::<R, V, M>(rest) else { break };
+        rest = rest.get(ld..).unwrap_or(&[]);
+        rank_one(&mut sums, rows, [*b0, *b1, *b2, *b3]);
+    }
+    // One by one: what stands in an array that a loop runs over would not stay in registers.
+    let [s0, s1, s2, s3] = sums;
+    store(s0, c0);
+    store(s1, c1);
+    store(s2, c2);
+    store(s3, c3);
+    if !rest.is_empty() {
+        last_column(rest, b0, c0);
+        last_column(rest, b1, c1);
+        last_column(rest, b2, c2);
+        last_column(rest, b3, c3);
+    }
+}
+
+/// The same for one column.
+#[inline(always)]
+fn tile_of_one<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: &[R], c: &mut [R]) {
+    let mut sums = [begin(c)];
+    let mut rest = a;
+    for b in b {
+        let Some(rows) = load::<R, V, M>(rest) else { break };
+        rest = rest.get(ld..).unwrap_or(&[]);
+        rank_one(&mut sums, rows, [*b]);
+    }
+    let [sums] = sums;
+    store(sums, c);
+    if !rest.is_empty() {
+        last_column(rest, b, c);
+    }
+}
+
+/// The last column of A where memory ends before a whole vector.
+#[cold]
+#[inline(never)]
+fn last_column<R: Real>(a: &[R], b: &[R], c: &mut [R]) {
+    for (c, a) in c.iter_mut().zip(a) {
+        *c -= *a * b.last().copied().unwrap_or(R::NAN);
+    }
+}
+
+#[inline(always)]
+fn rank_one<R: Real, V: Lanes<R>, const M: usize, const N: usize>(sums: &mut [[V; M]; N], rows: [V; M], b: [R; N]) {
+    for (sums, b) in sums.iter_mut().zip(b) {
+        let b = V::splat(b);
+        for (sum, row) in sums.iter_mut().zip(rows) {
+            *sum = sum.minus_product(row, b);
+        }
+    }
+}
+
+#[inline(always)]
+fn load<R: Real, V: Lanes<R>, const M: usize>(from: &[R]) -> Option<[V; M]> {
+    let mut rows = [V::splat(R::zero()); M];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = V::load(from.get(i * V::WIDTH..)?)?;
+    }
+    Some(rows)
+}
+
+#[inline(always)]
+fn begin<R: Real, V: Lanes<R>, const M: usize>(from: &[R]) -> [V; M] {
+    let mut rows = [V::splat(R::zero()); M];
+    for (i, row) in rows.iter_mut().enumerate() {
+        *row = V::begin(from.get(i * V::WIDTH..).unwrap_or(&[]));
+    }
+    rows
+}
+
+#[inline(always)]
+fn store<R: Real, V: Lanes<R>, const M: usize>(rows: [V; M], to: &mut [R]) {
+    for (i, row) in rows.into_iter().enumerate() {
+        row.store(to.get_mut(i * V::WIDTH..).unwrap_or(&mut []));
+    }
+}
+
+/// Side of a triangle that is solved at once, and columns that are eliminated together.
+pub(super) const BLOCK: usize = 8;
+
+/// Left-looking elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and
+/// the largest pivot; `None` when there is none.
+#[inline(always)]
+pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
+    block: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    pivots: &mut [R],
+) -> Option<(R, R)> {
+    let (mut smallest, mut largest) = (R::MAX, R::zero());
+    let width = pivots.len();
+    for (c, pivot) in pivots.iter_mut().enumerate() {
+        let (done, rest) = block.split_at_mut_checked(c * ld)?;
+        let column = part_mut(rest, 0, n);
+        let column = part_mut(column, k, n - k);
+        let size = match c {
+            0 => reduce_column::<R, V, 0>(done, ld, k, column),
+            1 => reduce_column::<R, V, 1>(done, ld, k, column),
+            2 => reduce_column::<R, V, 2>(done, ld, k, column),
+            3 => reduce_column::<R, V, 3>(done, ld, k, column),
+            4 => reduce_column::<R, V, 4>(done, ld, k, column),
+            5 => reduce_column::<R, V, 5>(done, ld, k, column),
+            6 => reduce_column::<R, V, 6>(done, ld, k, column),
+            _ => reduce_column::<R, V, 7>(done, ld, k, column),
+        };
+        if size == R::zero() || !size.is_finite() {
+            return None;
+        }
+        (smallest, largest) = (smallest.min(size), largest.max(size));
+        let row = k + c + part(column, c, n - k - c).iter().position(|y| y.abs() == size).unwrap_or(0);
+        *pivot = R::count(row);
+        if row != k + c {
+            for column in block.chunks_exact_mut(ld.max(1)).take(width) {
+                exchange(column, k + c, row);
+            }
+        }
+        let column = part_mut(block, c * ld, n);
+        let inverse = R::one() / at(column, k + c);
+        for y in part_mut(column, k + c + 1, n - k - c - 1) {
+            *y *= inverse;
+        }
+    }
+    Some((smallest, largest))
+}
+
+/// Solves with the `C` columns done before, rows `k ..`, and reduces the rows below; returns the largest magnitude there.
+#[inline(always)]
+fn reduce_column<R: Real, V: Lanes<R>, const C: usize>(done: &[R], ld: usize, k: usize, column: &mut [R]) -> R {
+    let mut rest = done;
+    let mut l: [&[R]; C] = [&[]; C];
+    for l in &mut l {
+        let (first, others) = rest.split_at_checked(ld).unwrap_or((&[], &[]));
+        (*l, rest) = (part(first, k, column.len()), others);
+    }
+    let Some((top, below)) = column.split_first_chunk_mut::<C>() else { return R::NAN };
+    let mut x = *top;
+    let mut triangle = [[R::zero(); C]; C];
+    for (t, l) in triangle.iter_mut().zip(&mut l) {
+        let Some((head, tail)) = l.split_first_chunk::<C>() else { return R::NAN };
+        (*t, *l) = (*head, tail);
+    }
+    for (p, t) in triangle.iter().enumerate() {
+        let pivot = at(&x, p);
+        for (x, t) in x.iter_mut().zip(t).skip(p + 1) {
+            *x -= pivot * *t;
+        }
+    }
+    *top = x;
+    let mut largest = V::splat(R::zero());
+    let mut done = 0;
+    let mut whole = below.chunks_exact_mut(V::WIDTH);
+    for y in whole.by_ref() {
+        let Some(mut sum) = V::load(y) else { break };
+        for (l, x) in l.iter().zip(x) {
+            let Some(l) = l.get(done..).and_then(V::load) else { return R::NAN };
+            sum = sum.minus_product(l, V::splat(x));
+        }
+        sum.store(y);
+        largest = largest.max_abs(sum);
+        done += V::WIDTH;
+    }
+    let mut size = largest.largest();
+    for (i, y) in whole.into_remainder().iter_mut().enumerate() {
+        for (l, x) in l.iter().zip(x) {
+            *y -= at(l, done + i) * x;
+        }
+        if y.abs() > size {
+            size = y.abs();
+        }
+    }
+    size
+}
+
+#[inline(always)]
+pub(super) fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
+    let (x, y) = (at(column, i), at(column, j));
+    put(column, i, y);
+    put(column, j, x);
+}
+
+/// Solves with the triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]): the unit lower one, or the upper one.
+#[inline(always)]
+pub(super) fn solve_triangle<R: Real, V: Lanes<R>, const UPPER: bool>(
+    left: &[R],
+    ld: usize,
+    k: usize,
+    right: &mut [R],
+) {
+    match BLOCK / V::WIDTH {
+        1 => triangle::<R, V, 1, UPPER>(left, ld, k, right),
+        2 => triangle::<R, V, 2, UPPER>(left, ld, k, right),
+        _ => triangle::<R, V, 4, UPPER>(left, ld, k, right),
+    }
+}
+
+/// The same, where `H` vectors make a block. Rows of the upper triangle are scaled so that it is a unit triangle too.
+#[inline(always)]
+fn triangle<R: Real, V: Lanes<R>, const H: usize, const UPPER: bool>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
+    let width = left.len().div_ceil(ld.max(1));
+    let (mut block, mut scale) = ([[R::zero(); BLOCK]; BLOCK], [-R::one(); BLOCK]);
+    for (p, (to, from)) in block.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
+        let from = part(from, k, width);
+        if UPPER {
+            put(&mut scale, p, -R::one() / at(from, p));
+            crate::workspace::copy(to, part(from, 0, p));
+        } else {
+            crate::workspace::copy(part_mut(to, p + 1, BLOCK - p - 1), part(from, p + 1, width - p - 1));
+        }
+    }
+    let scale = begin::<R, V, H>(&scale);
+    let mut block = block.map(|column| begin::<R, V, H>(&column));
+    if UPPER {
+        for column in &mut block {
+            *column = scaled(*column, scale);
+        }
+    }
+    let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
+    for group in groups.by_ref() {
+        let (first, second) = halves(group);
+        let ((a, b), (c, d)) = (halves(first), halves(second));
+        let columns = [part_mut(a, k, width), part_mut(b, k, width), part_mut(c, k, width), part_mut(d, k, width)];
+        substitute::<R, V, H, COLUMNS, UPPER>(&block, scale, columns);
+    }
+    for column in groups.into_remainder().chunks_mut(ld.max(1)) {
+        substitute::<R, V, H, 1, UPPER>(&block, scale, [part_mut(column, k, width)]);
+    }
+}
+
+/// Row by row, with the columns of a unit triangle.
+#[inline(always)]
+fn substitute<R: Real, V: Lanes<R>, const H: usize, const N: usize, const UPPER: bool>(
+    block: &[[V; H]; BLOCK],
+    scale: [V; H],
+    columns: [&mut [R]; N],
+) {
+    let mut y = [[V::splat(R::zero()); H]; N];
+    for (y, column) in y.iter_mut().zip(&columns) {
+        *y = begin(column);
+        if UPPER {
+            *y = scaled(*y, scale);
+        }
+    }
+    for i in 0..BLOCK {
+        let p = if UPPER { BLOCK - 1 - i } else { i };
+        let Some(column) = block.get(p) else { return };
+        for y in &mut y {
+            let x = y.get(p / V::WIDTH).map_or(R::NAN, |y| y.row(p % V::WIDTH));
+            for (y, l) in y.iter_mut().zip(column) {
+                *y = y.minus_product(*l, V::splat(x));
+            }
+        }
+    }
+    for (y, column) in y.into_iter().zip(columns) {
+        store(y, column);
+    }
+}
+
+/// `−scale · y`.
+#[inline(always)]
+fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V; H] {
+    let mut out = [V::splat(R::zero()); H];
+    for ((out, y), scale) in out.iter_mut().zip(y).zip(scale) {
+        *out = out.minus_product(y, scale);
+    }
+    out
+}

@@ -1,0 +1,120 @@
+//! The pole term of the trapezoidal rule, in closed form.
+//!
+//! W_ik ≈ ∫ ds Γ'/(Γ − z_i) has residue 1 at every preimage s* of z_i. Near the real axis the trapezoidal rule misses, per
+//! node k and with x = s* − s_j, m = j − k, σ = sign Im x,
+//!
+//! (π/N) (−1)^m e^(iσNx/2) cot((x + mh)/2),
+//!
+//! exactly for the trigonometric interpolant of the density. Its derivative by z is that of x times dx/dz. The cotangent
+//! of a sum needs no transcendental function per node: (c − τ s)/(s + τ c) with τ = tan(x/2), c + is = e^(imh/2).
+
+use crate::near::Preimage;
+use crate::scalar::{Complex, Real, cexp, complex, csin_cos};
+use crate::workspace::{part, part_mut};
+
+/// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
+pub(crate) fn table_len(nodes: usize) -> Option<usize> {
+    nodes.checked_mul(4)
+}
+
+/// Fills the table.
+pub(crate) fn fill_table<R: Real>(nodes: usize, table: &mut [R]) {
+    let len = 2 * nodes;
+    for r in 0..len {
+        // The cotangent has period π: reduced first, so that the sine of a whole period is exactly 0.
+        let reduced = if r < nodes { r } else { r - nodes };
+        let (s, c) = (R::PI * R::count(reduced) / R::count(nodes.max(1))).sin_cos();
+        crate::workspace::put(table, r, c);
+        crate::workspace::put(table, len + r, s);
+    }
+}
+
+/// Cosines and sines of rπ/N with r from (k₀ − j) mod N upwards, for k = k₀ = 0.
+#[inline]
+fn turned<R: Real>(table: &[R], nodes: usize, j: usize) -> (&[R], &[R]) {
+    let from = if j == 0 { 0 } else { nodes.saturating_sub(j) };
+    (part(table, from, nodes), part(table, 2 * nodes + from, nodes))
+}
+
+/// What a row of pole terms has in common: τ, the factor (π/N) (−1)^j e^(iσNx/2), σN/2.
+struct Row<R> {
+    tangent: Complex<R>,
+    factor: Complex<R>,
+    half: R,
+}
+
+impl<R: Real> Row<R> {
+    fn of(pre: &Preimage<R>, nodes: usize) -> Self {
+        let half = R::count(nodes) * R::HALF;
+        let half = if pre.x.im < R::zero() { -half } else { half };
+        let (s, c) = csin_cos(pre.x * R::HALF);
+        // e^(iσNx/2)
+        let decay = cexp(complex(-pre.x.im, pre.x.re) * half);
+        let scale = R::PI / R::count(nodes.max(1));
+        let scale = if pre.node.is_multiple_of(2) { scale } else { -scale };
+        Row { tangent: s / c, factor: decay * scale, half }
+    }
+}
+
+/// cot((x + mh)/2), m = j − k: the table holds the angle −m h/2.
+#[inline]
+fn cotangent<R: Real>(t: Complex<R>, c: R, s: R) -> Complex<R> {
+    let (top, bottom) = (complex(c + t.re * s, t.im * s), complex(t.re * c - s, t.im * c));
+    let inverse = R::one() / (bottom.re * bottom.re + bottom.im * bottom.im);
+    complex((top.re * bottom.re + top.im * bottom.im) * inverse, (top.im * bottom.re - top.re * bottom.im) * inverse)
+}
+
+/// Calls back with (k, term of W_ik) for the nodes of the source.
+#[inline]
+pub(crate) fn each_weight<R: Real>(
+    pre: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    mut visit: impl FnMut(usize, Complex<R>),
+) {
+    let row = Row::of(pre, nodes);
+    let (cos, sin) = turned(table, nodes, pre.node);
+    let mut factor = row.factor;
+    for (k, (c, s)) in cos.iter().zip(sin).enumerate() {
+        visit(k, factor * cotangent(row.tangent, *c, *s));
+        factor = -factor;
+    }
+}
+
+/// Σ_k of the terms of W_ik.
+pub(crate) fn sum_of_weights<R: Real>(pre: &Preimage<R>, table: &[R], nodes: usize) -> Complex<R> {
+    let mut sum = Complex::default();
+    each_weight(pre, table, nodes, |_, w| sum += w);
+    sum
+}
+
+/// The terms of D_ik = dW_ik/dz for one target against a density (real part and, if not empty, imaginary part):
+/// returns Σ_k D_ik w_k and adds Im(f D_ik) to `out_k` (if not empty). All scaled.
+pub(crate) fn slope_products<R: Real>(
+    pre: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    wx: &[R],
+    wy: &[R],
+    f: Complex<R>,
+    scale: R,
+    out: &mut [R],
+) -> Complex<R> {
+    let row = Row::of(pre, nodes);
+    let (cos, sin) = turned(table, nodes, pre.node);
+    let mut factor = row.factor * pre.rate * scale;
+    let mut sum = Complex::default();
+    for (k, (c, s)) in cos.iter().zip(sin).enumerate() {
+        let cot = cotangent(row.tangent, *c, *s);
+        // iσ(N/2) cot − (1 + cot²)/2
+        let square = cot * cot;
+        let d = factor
+            * complex(-row.half * cot.im - (R::one() + square.re) * R::HALF, row.half * cot.re - square.im * R::HALF);
+        factor = -factor;
+        sum += d * complex(wx.get(k).copied().unwrap_or(R::zero()), wy.get(k).copied().unwrap_or(R::zero()));
+        if let [o] = part_mut(out, k, 1) {
+            *o += (f * d).im;
+        }
+    }
+    sum
+}

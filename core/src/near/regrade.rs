@@ -1,0 +1,45 @@
+//! Nodes of the present configuration on the boundaries that carry ladders.
+
+use crate::boundary::{BoundaryRecord, write_nodes};
+use crate::curve::OutlineView;
+use crate::grading::{Grading, write_fitting};
+use crate::model::Model;
+use crate::near::ladders::listed;
+use crate::near::{COLUMNS, LADDER_LIST, NearMut, ladder_count};
+use crate::scalar::Real;
+use crate::status::Result;
+use crate::workspace::{part, part_mut, put};
+
+/// Rewrites grading and nodes of every boundary with ladders; the others keep the model's.
+///
+/// # Errors
+/// `Internal` if a node could not be placed to rounding.
+pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) -> Result<()> {
+    for (i, b) in model.boundaries.iter().enumerate() {
+        if ladder_count(part(near.ladders, i * LADDER_LIST, LADDER_LIST)) == 0 {
+            continue;
+        }
+        let rungs = part_mut(near.rungs, b.rungs_at, b.rungs_len);
+        let (count, _) = write_fitting(b.ladders(model.store).chain(listed(near.ladders, i)), rungs)?;
+        let view = OutlineView { grading: Grading::read(rungs, count), ..b.view(model.store) };
+        let nodes = part_mut(near.nodes, COLUMNS * b.first, COLUMNS * b.nodes);
+        write_nodes(&view, b.origin, b.nodes, nodes).map_err(|e| e.at(b.place))?;
+        if b.link.is_some() {
+            fill_potential(b, model.store, nodes);
+        }
+        put(near.ladders, i * LADDER_LIST + 1, R::count(count));
+    }
+    Ok(())
+}
+
+/// The interior potential of rotation at the nodes.
+fn fill_potential<R: Real>(b: &BoundaryRecord<R>, store: &[R], nodes: &mut [R]) {
+    let n = b.nodes;
+    let own = b.view(store).grading;
+    for k in 0..n {
+        let column = |c: usize| crate::workspace::at(nodes, c * n + k);
+        let (x, y, t) = (column(0), column(1), column(4));
+        let chi = b.rotation_potential(store, crate::scalar::complex(x, y), || own.jet(t)[0]);
+        put(nodes, 7 * n + k, chi);
+    }
+}

@@ -1,0 +1,36 @@
+//! Writes the tables of the extremes to the folder given: `cargo run --release -p nekton-tests --example extremes docs/accuracy`.
+
+use nekton_tests::extremes::*;
+
+type Table = (&'static str, &'static str, Vec<f64>, fn(f64) -> Case);
+
+fn powers(from: i32, to: i32) -> Vec<f64> {
+    (from..=to).map(|k| 10f64.powi(k)).collect()
+}
+
+fn main() -> std::io::Result<()> {
+    let mut arguments = std::env::args().skip(1);
+    let folder = std::path::PathBuf::from(arguments.next().unwrap_or_else(|| ".".into()));
+    let only = arguments.next();
+    let ratios = powers(-6, 6).into_iter().chain([f64::INFINITY]).collect();
+    let tables: [Table; 8] = [
+        ("density", "density_ratio", ratios, density),
+        ("length_same_durations", "length_m", powers(-6, 6), |l| scale(l, 1.0)),
+        ("length_same_speeds", "length_m", powers(-6, 6), |l| scale(l, l)),
+        ("bodies", "bodies", [1, 2, 3, 5, 8, 12, 20, 30, 50].map(f64::from).to_vec(), |n| bodies(n as usize)),
+        ("tank", "gap_in_radii", vec![3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4], tank),
+        ("circulation", "circulation_by_speed_and_size", powers(-2, 6), circulation),
+        ("spin", "spin_by_translation", powers(0, 6), spin),
+        ("repulsion", "exponent", (1..=12).map(f64::from).collect(), repulsion),
+    ];
+    for (name, parameter, values, case) in tables {
+        if only.as_deref().is_some_and(|o| o != name) {
+            continue;
+        }
+        let rows: Vec<Row> = values.into_iter().flat_map(|x| case(x).rows(x)).collect();
+        let text = csv(parameter, &rows);
+        println!("{name}\n{text}");
+        std::fs::write(folder.join(format!("extremes_{name}.csv")), text)?;
+    }
+    Ok(())
+}
