@@ -54,7 +54,7 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
         let reference = match stored {
             Some(reference) => reference,
             None => {
-                let found = reference::reference(&bench, until, limit, |what| bar.set_message(what.to_owned()));
+                let found = reference::reference(&bench, until, limit, 0.0, |what| bar.set_message(what.to_owned()));
                 found.map_err(|e| refused(&scene, e))?
             }
         };
@@ -208,7 +208,7 @@ pub fn choose(path: &Path, scene: &SceneFile, error: f64) -> Result<Choice, Prob
         }
         let clock = Instant::now();
         let limit = Duration::from_secs(1);
-        let reference = reference::reference(&bench, duration, limit, |_| ()).map_err(|e| refused(scene, e))?;
+        let reference = reference::reference(&bench, duration, limit, error, |_| ()).map_err(|e| refused(scene, e))?;
         let study =
             Study { bench: &bench, reference: &reference, limit, quick: true, known: Vec::new(), enough: error };
         let rows = study.run(|_, _| (), |_| Ok::<(), Problem>(()))?;

@@ -12,7 +12,7 @@ use super::setting::{Setting, Variant, method, scaled};
 
 /// Times at which trajectories are compared, after the start.
 pub const OUTPUTS: usize = 16;
-/// The clock is looked at this often between two of them.
+/// With a fixed step the clock is looked at this often between two of them.
 const LOOKS: usize = 8;
 /// Runs shorter than this are repeated and the shortest time taken.
 const REPEATED: Duration = Duration::from_millis(50);
@@ -200,8 +200,9 @@ fn run<R: Real>(
     let mut path = vec![wide(sim.positions())];
     let mut ended = Ended::Done;
     let clock = Instant::now();
-    // Looking at the clock must not cost more than a step.
-    let looks = if plan.unknowns == 0 { 1 } else { looks(setting, until) };
+    // Looking at the clock must not cost more than a step: a lone swimmer's velocities need an evaluation to be shown, and a
+    // lone body's evaluation is no more than a look.
+    let looks = if plan.formulation == Formulation::Velocity { looks(setting, until) } else { 1 };
     for k in 1..=OUTPUTS * looks {
         let t = R::lit(until * k as f64 / (OUTPUTS * looks) as f64);
         if let Err(error) = sim.advance_dense(t, R::lit(until)) {
@@ -223,7 +224,7 @@ fn run<R: Real>(
 fn looks(setting: &Setting, until: f64) -> usize {
     use crate::scene_file::Integrator;
     match setting.integrator {
-        Integrator::Adams { .. } => LOOKS,
+        Integrator::Adams { .. } => 1,
         _ => {
             let steps = (until / OUTPUTS as f64 / super::setting::parameter(setting.integrator)).round() as usize;
             (1..=LOOKS).rev().find(|n| steps.is_multiple_of(*n)).unwrap_or(1)

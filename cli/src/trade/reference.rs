@@ -10,10 +10,11 @@ use super::setting::Setting;
 use crate::scene_file::Integrator;
 
 /// Nodes with which the search for the reference begins, if the scene has more.
-const FIRST: usize = 64;
-/// Two trajectories that agree so far are converged.
+const FIRST: usize = 32;
+/// Two trajectories that agree so far are converged, whatever is asked.
 const AGREED: f64 = 1e-11;
 const ROUNDS: usize = 8;
+/// Tightest tolerance.
 const TOLERANCE: f64 = 1e-12;
 /// A start moved by this fraction of the largest link …
 const SHIFT: f64 = 1e-7;
@@ -68,7 +69,7 @@ fn setting(nodes: usize, tolerance: f64) -> Setting {
 /// The time until which trajectories can be compared: until the scene ends (by contact, say), or until it has magnified a
 /// change of its start a thousand times.
 pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, Refusal> {
-    let usual = setting(bench.nodes.min(FIRST), 1e-9);
+    let usual = setting(bench.nodes.min(FIRST), 1e-8);
     let shift = SHIFT * bench.size();
     let mut until = wanted;
     loop {
@@ -89,14 +90,17 @@ pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, R
     }
 }
 
-/// Raises the nodes until two trajectories agree. A horizon that makes this too slow is halved.
+/// Raises the nodes until two trajectories agree twenty times better than `goal`, the least error to be told. A horizon that
+/// makes this too slow is shortened.
 pub fn reference(
     bench: &Bench<'_>,
     wanted: f64,
     limit: Duration,
+    goal: f64,
     mut tell: impl FnMut(&str),
 ) -> Result<Reference, Refusal> {
     tell("horizon");
+    let (agreed, tolerance) = (AGREED.max(goal / 20.0), TOLERANCE.max(goal / 200.0));
     let mut until = horizon(bench, wanted, limit * PATIENCE)?;
     'shorter: loop {
         if until < SHORTEST * wanted {
@@ -106,11 +110,12 @@ pub fn reference(
         let mut before: Option<(Path, usize, f64)> = None;
         for round in 0..ROUNDS {
             tell(&format!("reference: {nodes} nodes to t = {until:.4}"));
-            let run = bench.once(&setting(nodes, TOLERANCE * (2 - round % 2) as f64), until, limit * PATIENCE, 0.0);
+            let run = bench.once(&setting(nodes, tolerance * (2 - round % 2) as f64), until, limit * PATIENCE, 0.0);
             match (run.ended, &before) {
                 (Ended::Failed(e), None) => return Err(e.into()),
                 (Ended::Limit, None) => {
-                    until *= 0.5;
+                    // Later rounds take more: half of what this one reached.
+                    until *= (0.5 * (run.path.len() - 1) as f64 / OUTPUTS as f64).max(0.5 / OUTPUTS as f64);
                     continue 'shorter;
                 }
                 // Nothing better can be had: what there is says itself how good it is.
@@ -127,7 +132,7 @@ pub fn reference(
                     if now > 0.5 * error && *error < 1e-6 {
                         return Ok(found(bench, until, *last, *error, path.clone()));
                     }
-                    if now < AGREED || round + 1 == ROUNDS || !bench.plan.fluid {
+                    if now < agreed || round + 1 == ROUNDS || !bench.plan.fluid {
                         return Ok(found(bench, until, nodes, now, run.path));
                     }
                     before = Some((run.path, nodes, now));
