@@ -6,7 +6,8 @@ use std::sync::Arc;
 use nekton::status::{Error, Place};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
-use nekton::{Method, ModelBuf, SimBuf};
+use crate::trade::{Choice, Variant, method, unit};
+use nekton::{ModelBuf, SimBuf};
 
 /// A scene with its model.
 pub struct Setup {
@@ -39,23 +40,19 @@ impl Setup {
         Ok(Setup { model: Arc::new(model), links, joints, scene })
     }
 
-    /// Starts a simulation.
-    pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
-        let method = match integrator {
-            Integrator::Rk4 { step } => Method::Rk4 { step },
-            Integrator::Abm4 { step } => Method::Abm4 { step },
-            Integrator::Gauss6 { step } => Method::Gauss6 { step },
-            Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance * self.unit() },
-        };
-        SimBuf::new(self.model.clone(), method).map_err(|e| self.problem(&e))
+    /// Compiles the scene anew with another setting.
+    pub fn remake(&mut self, choice: &Choice) -> Result<(), Problem> {
+        let Choice { setting, scale, .. } = choice;
+        let model = self.scene.with_core(|base| {
+            ModelBuf::new(&Variant { base, scale: *scale, force: setting.force, quadrature: setting.quadrature })
+        });
+        self.model = Arc::new(model.map_err(|e| self.problem(&e))?);
+        Ok(())
     }
 
-    /// What the absolute tolerance is a part of: 1, or the mean diameter of the smallest link if that is less (m). Otherwise a
-    /// body of a micrometre would be lost in a tolerance that suits one of a metre.
-    pub fn unit(&self) -> f64 {
-        let model = self.model.view();
-        let sizes = self.links.iter().filter_map(|link| Some(model.link(*link)?.perimeter / std::f64::consts::PI));
-        sizes.fold(1.0, f64::min)
+    /// Starts a simulation.
+    pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
+        SimBuf::new(self.model.clone(), method(integrator, unit(&self.model.view()))).map_err(|e| self.problem(&e))
     }
 
     /// An error of the core as a complaint about the scene file.

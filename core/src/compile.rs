@@ -176,7 +176,7 @@ fn head<R: Real, S: Description<R>>(
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
-    plan.operations = plan.count_operations();
+    plan.operations = plan.count_operations(layout.unknowns);
     let mut head = ModelHead {
         fluid_density: settings.fluid_density,
         gravity: settings.gravity,

@@ -11,6 +11,7 @@ mod fuzz;
 mod header;
 mod steps;
 mod test;
+mod trade;
 
 use crate::steps::{cargo, root};
 use std::process::ExitCode;
@@ -34,6 +35,9 @@ commands:
              headers, libraries, pkg-config file and CMake package into folder P
   extremes [TABLE]
              docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
+  trade [--quick | --resume]
+             docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
+             target/accuracy; --resume: goes on with a run that was cut off)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -51,6 +55,9 @@ fn main() -> ExitCode {
         ["symbols"] => archive::write_symbols(),
         ["c"] => c::run(),
         ["dist", "--prefix", prefix] => dist::run(prefix),
+        ["trade"] => trade::run(false),
+        ["trade", "--resume"] => trade::run(true),
+        ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["header"] => header::run(),
         ["extremes"] => extremes(&[]),
         ["extremes", table] => extremes(&[table]),

@@ -4,6 +4,7 @@ use crate::bare::{CORTEX_M, Compiler, compiler, installed};
 use crate::c;
 use crate::firmware;
 use crate::steps::{Outcome, Steps, cargo, execute, require, root};
+use crate::trade;
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
@@ -45,6 +46,7 @@ pub fn run() -> ExitCode {
     );
     c::add(&mut steps);
     scenes(&mut steps);
+    steps.run("speed against accuracy, quickly", trade::quick);
     steps.run("matlab (in octave)", matlab);
     steps.finish()
 }
