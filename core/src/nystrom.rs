@@ -163,10 +163,13 @@ pub(crate) fn add_pole_velocity<R: Real>(
     if table.is_empty() {
         return;
     }
+    let (nodes, scale) = (source.nodes, source.sign / R::PI);
     for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
         for p in c.preimages(j, first + i) {
-            let f = complex(fx.get(i).copied().unwrap_or(R::zero()), fy.get(i).copied().unwrap_or(R::zero()));
-            let h = pole::slope_products(&p, table, source.nodes, wx, wy, f, source.sign / R::PI, out);
+            let h = match fx.get(i).zip(fy.get(i)) {
+                Some((fx, fy)) => pole::slope_products(&p, table, nodes, wx, complex(*fx, *fy), scale, out),
+                None => pole::slope_sum(&p, table, nodes, [wx, wy], scale),
+            };
             (*hx, *hy) = (*hx + h.re, *hy + h.im);
         }
     }

@@ -316,7 +316,7 @@ fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
             let nodes = 64;
             let mut sim = discs(gap, turns, nodes);
             at_rest(&mut sim.view(), |c| {
-                let one = vec![1.0; nodes];
+                let (one, zero) = (vec![1.0; nodes], vec![0.0; nodes]);
                 for (j, i) in [(0, 1), (1, 0)] {
                     let ((source, points), (target, t)) = (c.boundary(j).unwrap(), c.boundary(i).unwrap());
                     let (mut zx, mut zy) = (vec![0.0; nodes], vec![0.0; nodes]);
@@ -327,7 +327,7 @@ fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
                         c,
                         (j, source),
                         target.first,
-                        [&one, &[]],
+                        [&one, &zero],
                         [&[], &[]],
                         [&mut hx, &mut hy],
                         &mut [],

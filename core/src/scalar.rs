@@ -257,6 +257,14 @@ pub fn cln_1p<R: Real>(z: Complex<R>) -> Complex<R> {
     complex(m.ln_1p() * R::HALF, z.im.atan2(R::one() + z.re))
 }
 
+/// Principal arc tangent, to relative accuracy near 0.
+pub fn catan<R: Real>(z: Complex<R>) -> Complex<R> {
+    let (x, y) = (z.re, z.im);
+    let below = R::one() - y;
+    let re = (x + x).atan2((R::one() + y) * below - x * x) * R::HALF;
+    complex(re, (R::lit(4.0) * y / (x * x + below * below)).ln_1p() / R::lit(4.0))
+}
+
 /// Principal square root.
 pub fn csqrt<R: Real>(z: Complex<R>) -> Complex<R> {
     let m = cabs(z);

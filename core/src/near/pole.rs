@@ -10,7 +10,7 @@
 
 use crate::near::Preimage;
 use crate::scalar::{Complex, Real, cexp, complex, csin_cos};
-use crate::workspace::{part, part_mut};
+use crate::workspace::part;
 
 /// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
 pub(crate) fn table_len(nodes: usize) -> Option<usize> {
@@ -64,6 +64,14 @@ fn cotangent<R: Real>(t: Complex<R>, c: R, s: R) -> Complex<R> {
     complex((top.re * bottom.re + top.im * bottom.im) * inverse, (top.im * bottom.re - top.re * bottom.im) * inverse)
 }
 
+/// Lanes of the loops over nodes, so that they vectorize; the terms alternate in sign.
+const LANES: usize = 8;
+
+fn signs<R: Real>() -> [R; LANES] {
+    let (plus, minus) = (R::one(), -R::one());
+    [plus, minus, plus, minus, plus, minus, plus, minus]
+}
+
 /// Calls back with (k, term of W_ik) for the nodes of the source.
 #[inline]
 pub(crate) fn each_weight<R: Real>(
@@ -74,10 +82,17 @@ pub(crate) fn each_weight<R: Real>(
 ) {
     let row = Row::of(pre, nodes);
     let (cos, sin) = turned(table, nodes, pre.node);
-    let mut factor = row.factor;
-    for (k, (c, s)) in cos.iter().zip(sin).enumerate() {
-        visit(k, factor * cotangent(row.tangent, *c, *s));
-        factor = -factor;
+    let f = row.factor;
+    for (first, (cos, sin)) in (0..).step_by(LANES).zip(cos.chunks(LANES).zip(sin.chunks(LANES))) {
+        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+        let out = re.iter_mut().zip(im.iter_mut()).zip(signs());
+        for (((re, im), sign), (c, s)) in out.zip(cos.iter().zip(sin)) {
+            let cot = cotangent(row.tangent, *c, *s);
+            (*re, *im) = ((f.re * cot.re - f.im * cot.im) * sign, (f.re * cot.im + f.im * cot.re) * sign);
+        }
+        for (k, (re, im)) in re.iter().zip(&im).enumerate().take(cos.len()) {
+            visit(first + k, complex(*re, *im));
+        }
     }
 }
 
@@ -88,33 +103,66 @@ pub(crate) fn sum_of_weights<R: Real>(pre: &Preimage<R>, table: &[R], nodes: usi
     sum
 }
 
-/// The terms of D_ik = dW_ik/dz for one target against a density (real part and, if not empty, imaginary part):
-/// returns Σ_k D_ik w_k and adds Im(f D_ik) to `out_k` (if not empty). All scaled.
+/// dW_ik/dz apart from its sign and from the factor: iσ(N/2) cot − (1 + cot²)/2.
+#[inline]
+fn slope<R: Real>(row: &Row<R>, c: R, s: R) -> Complex<R> {
+    let cot = cotangent(row.tangent, c, s);
+    complex(
+        -row.half * cot.im - (R::one() + cot.re * cot.re - cot.im * cot.im) * R::HALF,
+        row.half * cot.re - cot.re * cot.im,
+    )
+}
+
+/// Σ_k D_ik w_k of the terms of D_ik = dW_ik/dz for one target, scaled, and Im(f D_ik) added to `out_k`.
 pub(crate) fn slope_products<R: Real>(
     pre: &Preimage<R>,
     table: &[R],
     nodes: usize,
-    wx: &[R],
-    wy: &[R],
+    w: &[R],
     f: Complex<R>,
     scale: R,
     out: &mut [R],
 ) -> Complex<R> {
     let row = Row::of(pre, nodes);
     let (cos, sin) = turned(table, nodes, pre.node);
-    let mut factor = row.factor * pre.rate * scale;
-    let mut sum = Complex::default();
-    for (k, (c, s)) in cos.iter().zip(sin).enumerate() {
-        let cot = cotangent(row.tangent, *c, *s);
-        // iσ(N/2) cot − (1 + cot²)/2
-        let square = cot * cot;
-        let d = factor
-            * complex(-row.half * cot.im - (R::one() + square.re) * R::HALF, row.half * cot.re - square.im * R::HALF);
-        factor = -factor;
-        sum += d * complex(wx.get(k).copied().unwrap_or(R::zero()), wy.get(k).copied().unwrap_or(R::zero()));
-        if let [o] = part_mut(out, k, 1) {
-            *o += (f * d).im;
+    let factor = row.factor * pre.rate * scale;
+    let g = f * factor;
+    let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+    let angles = cos.chunks(LANES).zip(sin.chunks(LANES));
+    for ((cos, sin), (w, out)) in angles.zip(w.chunks(LANES).zip(out.chunks_mut(LANES))) {
+        let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
+        let nodes = cos.iter().zip(sin).zip(w.iter().zip(out));
+        for (((re, im), sign), ((c, s), (w, out))) in sums.zip(nodes) {
+            let d = slope(&row, *c, *s);
+            let signed = *w * sign;
+            *re += d.re * signed;
+            *im += d.im * signed;
+            *out += (g.re * d.im + g.im * d.re) * sign;
         }
     }
-    sum
+    factor * re.iter().zip(&im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im))
+}
+
+/// Σ_k D_ik w_k of the terms for one target and a complex density, scaled.
+pub(crate) fn slope_sum<R: Real>(
+    pre: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    [wx, wy]: [&[R]; 2],
+    scale: R,
+) -> Complex<R> {
+    let row = Row::of(pre, nodes);
+    let (cos, sin) = turned(table, nodes, pre.node);
+    let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+    let angles = cos.chunks(LANES).zip(sin.chunks(LANES));
+    for ((cos, sin), (wx, wy)) in angles.zip(wx.chunks(LANES).zip(wy.chunks(LANES))) {
+        let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
+        for (((re, im), sign), ((c, s), (x, y))) in sums.zip(cos.iter().zip(sin).zip(wx.iter().zip(wy))) {
+            let d = slope(&row, *c, *s);
+            *re += (d.re * *x - d.im * *y) * sign;
+            *im += (d.re * *y + d.im * *x) * sign;
+        }
+    }
+    let sum = re.iter().zip(&im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
+    row.factor * pre.rate * scale * sum
 }

@@ -8,7 +8,7 @@ use crate::configuration::{Configuration, Poses};
 use crate::curve::{Curve, OutlineView};
 use crate::model::Model;
 use crate::near::{NearMut, PREIMAGES, pole};
-use crate::scalar::{Complex, Real, cabs, cln, complex, csqrt, dot};
+use crate::scalar::{Complex, Real, cabs, cln, cln_1p, complex, csin_cos, csqrt, dot};
 use crate::workspace::{at, copy, part_mut};
 
 /// A preimage near the real axis.
@@ -93,21 +93,39 @@ impl<R: Real> Source<'_, R> {
                 continue;
             }
             let j = nearest(self.nodes.t, turn);
-            let t_j = at(self.nodes.t, j);
-            let mut u = complex(wrapped(turn - t_j), lift);
-            let aim = z - complex(at(self.nodes.x, j), at(self.nodes.y, j));
-            // The closed form is exact to rounding of z; next to the node only the difference is.
-            if cabs(u) < R::lit(0.1) {
-                let slope = self.view.curve.jet(u + t_j)[1];
-                u -= (self.view.curve.delta(t_j, u) - aim) / slope;
-            }
-            if let Some(p) = self.preimage(j, u)
+            if let Some(p) = self.ellipse_preimage([a, b], j, z, w)
                 && let Some(slot) = slots.next()
             {
                 *slot = Some(p);
             }
         }
         found
+    }
+
+    /// The root w = e^(it*) counted from node j: with W = e^(it_j) (1 + ε), P = (a + b) W_j/2, Q = (a − b)/(2 W_j) and
+    /// d = z − Γ_j the equation is P ε² + (P − Q − d) ε = d, solved without cancellation.
+    fn ellipse_preimage(&self, [a, b]: [R; 2], j: usize, z: Complex<R>, w: Complex<R>) -> Option<Preimage<R>> {
+        let t_j = at(self.nodes.t, j);
+        let node = crate::scalar::cis(t_j);
+        let (p, q) = (node * ((a + b) * R::HALF), node.conj() * ((a - b) * R::HALF));
+        let d = z - complex(at(self.nodes.x, j), at(self.nodes.y, j));
+        let half = (p - q - d) * R::HALF;
+        let root = csqrt(half * half + p * d);
+        let root = if dot(half, root) < R::zero() { -root } else { root };
+        // Both roots; the one meant is the closer to w.
+        let small = d / (half + root);
+        let large = -(half + root) / p;
+        let aim = w * node.conj() - R::one();
+        let epsilon = if cabs(small - aim) <= cabs(large - aim) { small } else { large };
+        let turn = cln_1p(epsilon);
+        let u = complex(turn.im, -turn.re);
+        // e^(iu/2), whose inverse and own difference is 2i sin(u/2)
+        let power = epsilon + R::one();
+        let half_power = csqrt(power);
+        let sine = epsilon / (half_power * R::TWO);
+        let halves = [complex(sine.im, -sine.re), (power + R::one()) / (half_power * R::TWO)];
+        let tangent = p * power - q / power;
+        self.complete(j, u, halves, complex(-tangent.im, tangent.re))
     }
 
     /// Real part and magnitude of the imaginary part of the preimage of z next to the boundary; `None` where it is too far to
@@ -259,15 +277,26 @@ impl<R: Real> Source<'_, R> {
         best.1
     }
 
-    /// Completes a root t_j + u; `None` where the pole term is lost in rounding.
+    /// Completes a root t_j + u.
     fn preimage(&self, node: usize, u: Complex<R>) -> Option<Preimage<R>> {
-        let t_j = at(self.nodes.t, node);
-        let x = self.view.grading.difference(t_j, u);
+        let (sin, cos) = csin_cos(u * R::HALF);
+        self.complete(node, u, [sin, cos], self.view.curve.jet(u + at(self.nodes.t, node))[1])
+    }
+
+    /// Completes a root t_j + u, given sine and cosine of u/2 and γ' there; `None` where the pole term is lost in rounding.
+    fn complete(
+        &self,
+        node: usize,
+        u: Complex<R>,
+        halves: [Complex<R>; 2],
+        tangent: Complex<R>,
+    ) -> Option<Preimage<R>> {
+        let [x, slope] = self.view.grading.difference(at(self.nodes.t, node), u, halves);
         let exponent = R::count(self.nodes.t.len()) * x.im.abs() * R::HALF;
         if exponent.is_nan() || exponent >= reach() || x.im == R::zero() {
             return None;
         }
-        let rate = self.view.grading.slope(t_j, u) / self.view.curve.jet(u + t_j)[1];
+        let rate = slope / tangent;
         (rate.re.is_finite() && rate.im.is_finite()).then_some(Preimage { node, x, rate })
     }
 }
