@@ -8,6 +8,8 @@ use nekton::scene::{Body, ForceFormula, Harmonic, Quadrature, Root, Scene, Signa
 use nekton_tests::{adams, body, paper_ellipse, simulation, two_ellipses};
 use std::time::Instant;
 
+type Run = Box<dyn Fn(&Lapack) -> Result<Measured, String>>;
+
 /// A measurement: a ratio of two times, or one time.
 pub struct Row {
     /// What is measured, and against what.
@@ -20,7 +22,7 @@ pub struct Row {
     pub aim: f64,
     /// The guard holds it to `must`. The other rows are goals that are not reached, or need more than one free processor.
     pub guarded: bool,
-    run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>,
+    run: Run,
 }
 
 /// What came out.
@@ -247,7 +249,7 @@ const GUARDED: [&str; 2] = ["articulated body of 6 links / the links free", "the
 /// Every row that is measured by time.
 pub fn rows() -> Vec<Row> {
     let mut all = Vec::new();
-    let mut row = |name, size, must, aim, run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>| {
+    let mut row = |name, size, must, aim, run: Run| {
         let guarded = GUARDED.contains(&name);
         all.push(Row { name, size, must, aim, guarded, run });
     };

@@ -254,47 +254,77 @@ impl<R: Real> Task for BothVelocities<'_, '_, R> {
         for (((g, dg), w), out) in self.nodes.points().zip(self.nodes.tangents()).zip(self.w).zip(self.out) {
             let weight = dg * self.factor;
             let c = weight * *w;
-            let mut sums = ([R::zero(); LANES], [R::zero(); LANES]);
+            let mut sums = [[R::zero(); LANES]; 2];
             let (mut hx, mut hy) = (t.hx.chunks_exact_mut(LANES), t.hy.chunks_exact_mut(LANES));
             let (zx, zy) = (t.zx.chunks_exact(LANES), t.zy.chunks_exact(LANES));
             let (fx, fy) = (t.fx.chunks_exact(LANES), t.fy.chunks_exact(LANES));
-            let rest = (zx.remainder(), zy.remainder(), fx.remainder(), fy.remainder());
+            let rest = [zx.remainder(), zy.remainder(), fx.remainder(), fy.remainder()];
             for ((hx, hy), ((x, y), (fx, fy))) in hx.by_ref().zip(hy.by_ref()).zip(zx.zip(zy).zip(fx.zip(fy))) {
-                both_lanes(g, c, (x, y), (fx, fy), (hx, hy), &mut sums);
+                sums = both_lanes(g, c, [x, y, fx, fy], [hx, hy], sums);
             }
-            let (x, y, fx, fy) = rest;
-            both_lanes(g, c, (x, y), (fx, fy), (hx.into_remainder(), hy.into_remainder()), &mut sums);
-            let pairs = sums.0.iter().zip(&sums.1);
+            if !rest[0].is_empty() {
+                sums = both_lanes(g, c, rest, [hx.into_remainder(), hy.into_remainder()], sums);
+            }
+            let [re, im] = sums;
+            let pairs = re.iter().zip(&im);
             let sum = pairs.fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
             *out += (weight * sum).im;
         }
     }
 }
 
-/// At most eight targets. Three loops, each of which vectorizes.
+/// At most eight targets; returns the sums. What is missing stands at distance 1 and has no weight. Arrays by value and
+/// short loops, each of which vectorizes.
 #[inline(always)]
 fn both_lanes<R: Real>(
     g: Complex<R>,
     c: Complex<R>,
-    (x, y): (&[R], &[R]),
-    (fx, fy): (&[R], &[R]),
-    (hx, hy): (&mut [R], &mut [R]),
-    (re, im): &mut ([R; LANES], [R; LANES]),
-) {
+    [x, y, fx, fy]: [&[R]; 4],
+    [hx, hy]: [&mut [R]; 2],
+    [mut re, mut im]: [[R; LANES]; 2],
+) -> [[R; LANES]; 2] {
+    let (x, y) = (lanes(x, g.re - R::one()), lanes(y, g.im));
+    let (fx, fy) = (lanes(fx, R::zero()), lanes(fy, R::zero()));
+    let (mut vx, mut vy) = (lanes(hx, R::zero()), lanes(hy, R::zero()));
     let (mut sx, mut sy) = ([R::zero(); LANES], [R::zero(); LANES]);
     for (((sx, sy), x), y) in sx.iter_mut().zip(&mut sy).zip(x).zip(y) {
-        let (dx, dy) = (g.re - *x, g.im - *y);
+        let (dx, dy) = (g.re - x, g.im - y);
         let inverse = R::one() / (dx * dx + dy * dy);
         let (ex, ey) = (dx * inverse, -dy * inverse);
         (*sx, *sy) = (ex * ex - ey * ey, (ex + ex) * ey);
     }
-    for (((hx, hy), sx), sy) in hx.iter_mut().zip(hy).zip(&sx).zip(&sy) {
-        *hx += c.re * *sx - c.im * *sy;
-        *hy += c.re * *sy + c.im * *sx;
+    for ((v, sx), sy) in vx.iter_mut().zip(sx).zip(sy) {
+        *v += c.re * sx - c.im * sy;
     }
-    for (((((re, im), sx), sy), fx), fy) in re.iter_mut().zip(im).zip(&sx).zip(&sy).zip(fx).zip(fy) {
-        *re += *sx * *fx - *sy * *fy;
-        *im += *sx * *fy + *sy * *fx;
+    for ((v, sx), sy) in vy.iter_mut().zip(sx).zip(sy) {
+        *v += c.re * sy + c.im * sx;
+    }
+    for ((((re, sx), sy), fx), fy) in re.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
+        *re += sx * fx - sy * fy;
+    }
+    for ((((im, sx), sy), fx), fy) in im.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
+        *im += sx * fy + sy * fx;
+    }
+    put_lanes(vx, hx);
+    put_lanes(vy, hy);
+    [re, im]
+}
+
+/// A vector of lanes; the missing ones are filled.
+#[inline(always)]
+fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
+    from.first_chunk().copied().unwrap_or_else(|| {
+        let mut lanes = [fill; LANES];
+        copy(&mut lanes, from);
+        lanes
+    })
+}
+
+#[inline(always)]
+fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
+    match to.first_chunk_mut() {
+        Some(to) => *to = lanes,
+        None => copy(to, &lanes),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The scalar types of the library, `f32` and `f64`, and the few complex functions the numerics need.
 //!
-//! Every transcendental function goes through `libm`, with and without `std`, so that a model gives the
+//! Every transcendental function goes through `libm`, with and without `std`, so that each gives the
 //! same bits whichever features it was built with.
 
 use core::fmt::{Debug, Display};
