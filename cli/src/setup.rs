@@ -24,7 +24,7 @@ impl Setup {
     /// Reads and compiles a scene.
     pub fn open(path: &Path) -> Result<Self, Problem> {
         let scene = SceneFile::open(path)?;
-        let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
+        let model = scene.with_core(|core| ModelBuf::resolved(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
         let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();
@@ -61,6 +61,17 @@ impl Setup {
     /// An error of the core as a complaint about the scene file.
     pub fn problem(&self, error: &Error) -> Problem {
         self.scene.problem(error)
+    }
+
+    /// Every boundary with its nodes.
+    pub fn nodes(&self) -> Vec<String> {
+        let view = self.model.view();
+        let labels = self.scene.labels();
+        let links = self.links.iter().zip(labels).filter_map(|(core, label)| Some((label, view.link(*core)?.place)));
+        let obstacles = (0..self.scene.obstacles.len()).map(Place::Obstacle);
+        let walls = self.scene.tank.iter().map(|_| Place::Tank).chain(obstacles);
+        let walls = walls.map(|place| (self.scene.name_of(place).trim_start_matches("the ").to_owned(), place));
+        links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
     }
 
     /// What set-up mended.

@@ -6,6 +6,8 @@ use nekton::status::{Error, Result};
 use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::sync::Arc;
 
+pub mod near;
+
 pub mod extremes;
 pub mod long_run;
 

@@ -2,6 +2,7 @@
 
 mod archive;
 mod bare;
+mod bench;
 mod c;
 mod dist;
 mod expected;
@@ -20,6 +21,11 @@ commands:
   test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  bench      docs/bench/ratios.csv: speed beside OpenBLAS's factorization
+  bench-guard
+             fails when one of those ratios is too large
+  bench-counts
+             docs/bench/instructions.csv: instructions per evaluation, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
@@ -36,6 +42,9 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["bench"] => bench::run(),
+        ["bench-guard"] => bench::guard(),
+        ["bench-counts"] => bench::write_counts(),
         ["firmware"] => firmware::run(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),
