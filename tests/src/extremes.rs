@@ -215,8 +215,8 @@ impl Row {
 }
 
 /// The columns after the first.
-pub const COLUMNS: &str = "precision,status,time_reached,position_error,energy_drift,indicator_mass,indicator_force,\
-                           indicator_time,evaluations";
+pub const COLUMNS: &str = "precision,status,time_reached_s,position_error_sizes,energy_drift_relative,indicator_mass,indicator_force,\
+                           indicator_time_sizes,evaluations";
 
 /// A table as CSV.
 pub fn csv(parameter: &str, rows: &[Row]) -> String {

@@ -162,7 +162,7 @@ pub fn drift_table(text: &mut String, part_done: &mut dyn FnMut(&str)) {
             }
         }
     }
-    text.push_str("motion,method,precision,step_s,steps,energy_drift,impulse_drift\n");
+    text.push_str("motion,method,precision,step_s,steps,energy_drift_relative,impulse_drift_relative\n");
     part::<f64>(text, "f64", part_done);
     part::<f32>(text, "f32", part_done);
 }
