@@ -188,7 +188,7 @@ enum {
 #define NEKTON_METHOD_ADAMS 3
 
 /**
- * Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+ * Implicit Gauss-Legendre of order 6, fixed step, 20 to 40 evaluations a step: the energy does not drift. UNSUPPORTED in
  * archives for microcontrollers, unless they were built with the feature implicit.
  */
 #define NEKTON_METHOD_GAUSS6 4

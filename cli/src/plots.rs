@@ -1,5 +1,7 @@
 //! Plots as SVG text.
 
+pub mod log;
+
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -32,22 +34,29 @@ const THICK: u32 = 24;
 const GREY: RGBColor = RGBColor(120, 120, 120);
 
 /// A named line.
-struct Series {
-    name: String,
-    points: Vec<(f64, f64)>,
-    colour: RGBColor,
-    thick: bool,
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// Points.
+    pub points: Vec<(f64, f64)>,
+    /// Colour.
+    pub colour: RGBColor,
+    /// Drawn thick, below thin ones.
+    pub thick: bool,
 }
 
-type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
+/// What drawing gives.
+pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 
-fn colour(k: usize) -> RGBColor {
+/// Colour number `k` of [`COLOURS`], which repeat.
+pub fn colour(k: usize) -> RGBColor {
     let (r, g, b) = COLOURS[k % COLOURS.len()];
     RGBColor(r, g, b)
 }
 
 /// All plots of a run: file name and SVG text.
-pub fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
+pub(crate) fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
     let mut plots = vec![
         ("trajectories.svg", trajectories(record)?),
         ("energy.svg", over_time("Energy", "energy", "J/m", &energies(record))?),
@@ -169,7 +178,11 @@ fn tick(x: &f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-fn over_time(title: &str, name: &str, unit: &str, series: &[Series]) -> Outcome<String> {
+/// A quantity over time.
+///
+/// # Errors
+/// Only such as the drawing backend has.
+pub fn over_time(title: &str, name: &str, unit: &str, series: &[Series]) -> Outcome<String> {
     let times = series.iter().flat_map(|s| s.points.iter().map(|p| p.0));
     let (from, to) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
     let times = if from < to { (from, to) } else { (0.0, 1.0) };
@@ -284,10 +297,17 @@ fn legend(area: &DrawingArea<SVGBackend<'_>, Shift>, series: &[Series]) -> Outco
         }
         let style = s.colour.stroke_width(if s.thick { THICK } else { LINE });
         area.draw(&PathElement::new(vec![(0, y), (22 * fine, y)], style))?;
-        let name: String =
-            if s.name.chars().count() > 24 { s.name.chars().take(23).chain(['…']).collect() } else { s.name.clone() };
-        area.draw(&Text::new(name, (28 * fine, y - 7 * fine), ("sans-serif", 13 * FINE)))?;
+        legend_text(area, &s.name, y)?;
     }
+    Ok(())
+}
+
+/// A name in the legend, cut if it is too long.
+fn legend_text(area: &DrawingArea<SVGBackend<'_>, Shift>, name: &str, y: i32) -> Outcome<()> {
+    let fine = FINE as i32;
+    let name: String =
+        if name.chars().count() > 24 { name.chars().take(23).chain(['…']).collect() } else { name.to_owned() };
+    area.draw(&Text::new(name, (28 * fine, y - 7 * fine), ("sans-serif", 13 * FINE)))?;
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use crate::record::{Energies, Nearest, Record, Row, Terms};
 use crate::report;
 use crate::scene_file::{Integrator, Problem, RunDef};
 use crate::setup::Setup;
+use crate::trade;
 use crate::{Ending, say};
 use nekton::{Model, Resolution, Sim};
 
@@ -21,10 +22,16 @@ const OUTLINE_POINTS: usize = 240;
 const PROGRESS: u64 = 1000;
 
 /// Runs a scene and writes its results.
-pub fn run(path: &Path, folder: &Path) -> Result<Ending, Problem> {
-    let setup = Setup::open(path)?;
-    let plan = setup.scene.run()?.clone();
+pub fn run(path: &Path, folder: &Path, error: Option<f64>) -> Result<Ending, Problem> {
+    let mut setup = Setup::open(path)?;
+    let mut plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
+    let choice = error.map(|error| trade::choose(path, &setup.scene, error)).transpose()?;
+    if let Some(choice) = &choice {
+        setup.remake(choice)?;
+        plan.integrator = choice.setting.integrator;
+        say(&choice.why);
+    }
     let mut sim = setup.simulate(plan.integrator)?;
     let mut view = sim.view();
     let clock = Instant::now();

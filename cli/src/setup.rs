@@ -6,7 +6,8 @@ use std::sync::Arc;
 use nekton::status::{Error, Place};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
-use nekton::{Method, ModelBuf, SimBuf};
+use crate::trade::{Choice, Variant, method, unit};
+use nekton::{ModelBuf, SimBuf};
 
 /// A scene with its model.
 pub struct Setup {
@@ -39,15 +40,19 @@ impl Setup {
         Ok(Setup { model: Arc::new(model), links, joints, scene })
     }
 
+    /// Compiles the scene anew with another setting.
+    pub fn remake(&mut self, choice: &Choice) -> Result<(), Problem> {
+        let Choice { setting, scale, .. } = choice;
+        let model = self.scene.with_core(|base| {
+            ModelBuf::new(&Variant { base, scale: *scale, force: setting.force, quadrature: setting.quadrature })
+        });
+        self.model = Arc::new(model.map_err(|e| self.problem(&e))?);
+        Ok(())
+    }
+
     /// Starts a simulation.
     pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
-        let method = match integrator {
-            Integrator::Rk4 { step } => Method::Rk4 { step },
-            Integrator::Abm4 { step } => Method::Abm4 { step },
-            Integrator::Gauss6 { step } => Method::Gauss6 { step },
-            Integrator::Adams { tolerance } => Method::Adams { relative: tolerance, absolute: tolerance },
-        };
-        SimBuf::new(self.model.clone(), method).map_err(|e| self.problem(&e))
+        SimBuf::new(self.model.clone(), method(integrator, unit(&self.model.view()))).map_err(|e| self.problem(&e))
     }
 
     /// An error of the core as a complaint about the scene file.

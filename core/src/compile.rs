@@ -9,7 +9,7 @@ use crate::scalar::Real;
 use crate::scene::{CirculationModel, Description};
 use crate::status::{Error, Result, Status};
 use crate::validate::validate;
-use crate::workspace::part;
+use crate::workspace::{part, part_mut};
 
 /// Lengths of a model's four arrays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -94,6 +94,10 @@ impl<'a, R: Real> Model<'a, R> {
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
+        if layout.close_range_len > 0 {
+            let tables = part_mut(store, layout.close_range_at, layout.close_range_len);
+            crate::forces::close_range::fill_tables(tables, scratch)?;
+        }
         if traits.graded && head.plan.walls > 1 {
             let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
             grade_walls(walls, store, scratch)?;
@@ -172,7 +176,7 @@ fn head<R: Real, S: Description<R>>(
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
-    plan.operations = plan.count_operations();
+    plan.operations = plan.count_operations(layout.unknowns);
     let mut head = ModelHead {
         fluid_density: settings.fluid_density,
         gravity: settings.gravity,
@@ -188,6 +192,8 @@ fn head<R: Real, S: Description<R>>(
             nodes: if traits.graded { layout.unknowns } else { 0 },
             rungs: if traits.graded { layout.rungs } else { 0 },
         },
+        close_range_at: layout.close_range_at,
+        close_range_len: layout.close_range_len,
         tracks_work,
         prescribed_moves,
         lone_added_mass: [R::zero(); 9],

@@ -1,6 +1,7 @@
 //! What a scene requires and where everything goes in a model's store: the same lines count and place.
 
 use crate::boundary::{BoundaryRecord, modes_len, potential_scratch};
+use crate::forces::close_range;
 use crate::grading::grading_len;
 use crate::model::Formulation;
 use crate::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
@@ -117,6 +118,8 @@ pub(crate) struct Layout {
     pub(crate) unknowns: usize,
     /// Reals of the rungs of a configuration.
     pub(crate) rungs: usize,
+    pub(crate) close_range_at: usize,
+    pub(crate) close_range_len: usize,
 }
 
 fn sum(a: usize, b: usize) -> Result<usize> {
@@ -214,6 +217,11 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             scratch = scratch.max(crate::lone::scratch_len(layout.unknowns, traits.circulation)?);
         }
     }
+    if traits.graded && traits.repels {
+        layout.close_range_len = close_range::tables_len::<R>();
+        (layout.close_range_at, at) = (at, sum(at, layout.close_range_len)?);
+        scratch = scratch.max(close_range::scratch_len::<R>().ok_or(Status::SizeOverflow)?);
+    }
     layout.signals_at = at;
     for signal in motions(scene) {
         at = sum(at, signal.store_len())?;
@@ -233,6 +241,7 @@ pub(crate) struct Traits {
     pub(crate) graded: bool,
     /// Pole terms are used: also by a lone thin body.
     pub(crate) tables: bool,
+    pub(crate) repels: bool,
 }
 
 impl Traits {
@@ -256,6 +265,6 @@ impl Traits {
         let repels = settings.repulsion.is_some_and(|r| r.epsilon != R::zero());
         let tables = settings.quadrature == Quadrature::Graded && (fluid || repels);
         let graded = tables && wall_count(scene) + links > 1;
-        Traits { fluid, circulation, formulation, graded, tables }
+        Traits { fluid, circulation, formulation, graded, tables, repels }
     }
 }

@@ -124,6 +124,8 @@ pub struct ModelHead<R> {
     pub(crate) walls_regular_at: usize,
     pub(crate) channels: usize,
     pub(crate) near: NearDims,
+    pub(crate) close_range_at: usize,
+    pub(crate) close_range_len: usize,
     pub(crate) tracks_work: bool,
     pub(crate) prescribed_moves: bool,
     /// Lone body: added mass (without mass) and flux impulse of its circulation, per unit density, body frame.
@@ -211,6 +213,10 @@ impl<'a, R: Real> Model<'a, R> {
         let c = self.joints().nth(j)?;
         let l = self.links.get(c.link)?;
         Some(JointInfo { place: Place::Link(l.place.0, l.place.1), prescribed: c.control == Control::Prescribed })
+    }
+    /// Tables of nodes for points close to an outline (empty: plain rule or no repulsion).
+    pub(crate) fn close_range(&self) -> &'a [R] {
+        crate::workspace::part(self.store, self.head.close_range_at, self.head.close_range_len)
     }
     pub(crate) fn joints(&self) -> impl Iterator<Item = &'a CoordinateRecord<R>> + use<'a, R> {
         self.coordinates.iter().filter(|c| c.component == 3)

@@ -56,14 +56,16 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Leading-order operation count of one evaluation.
-    pub(crate) fn count_operations(&self) -> f64 {
+    /// Leading-order operation count of one evaluation, `nodes` of all boundaries.
+    pub(crate) fn count_operations(&self, nodes: usize) -> f64 {
         let (n, m) = (self.unknowns as f64, self.right_hand_sides as f64);
         let pairs = (self.unknowns * self.unknowns) as f64;
         let assembly = if self.circulation { 14.0 } else { 10.0 };
         // Induced velocity of the force pass: 20 flops per pair, once more for circulation.
         let force = if self.circulation { 44.0 } else { 20.0 };
-        2.0 / 3.0 * n * n * n + 2.0 * n * n * m + (assembly + force) * pairs
+        // Repulsion: 25 flops, one root and one power per pair, each pair once; it needs no boundary system.
+        let repulsion = if self.repulsion { 12.5 * (nodes * nodes) as f64 } else { 0.0 };
+        2.0 / 3.0 * n * n * n + 2.0 * n * n * m + (assembly + force) * pairs + repulsion
     }
 }
 

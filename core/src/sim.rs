@@ -36,7 +36,7 @@ pub enum Method<R> {
         /// Absolute tolerance.
         absolute: R,
     },
-    /// Implicit Gauss–Legendre of order 6, fixed step, 10 to 20 evaluations per step: for long runs, since the energy
+    /// Implicit Gauss–Legendre of order 6, fixed step, 20 to 40 evaluations per step: for long runs, since the energy
     /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
     /// `implicit`, which `std` includes.
     Gauss6 {

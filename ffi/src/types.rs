@@ -267,7 +267,7 @@ pub const NEKTON_METHOD_RK4: i32 = 1;
 pub const NEKTON_METHOD_ABM4: i32 = 2;
 /// Adams-Bashforth-Moulton of variable order 1 to 12 and variable step, 2 evaluations a step.
 pub const NEKTON_METHOD_ADAMS: i32 = 3;
-/// Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+/// Implicit Gauss-Legendre of order 6, fixed step, 20 to 40 evaluations a step: the energy does not drift. UNSUPPORTED in
 /// archives for microcontrollers, unless they were built with the feature implicit.
 pub const NEKTON_METHOD_GAUSS6: i32 = 4;
 

@@ -2,6 +2,7 @@
 
 mod archive;
 mod bare;
+mod bench;
 mod c;
 mod dist;
 mod expected;
@@ -10,7 +11,9 @@ mod fuzz;
 mod header;
 mod steps;
 mod test;
+mod trade;
 
+use crate::steps::{cargo, root};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask <command>
@@ -19,12 +22,22 @@ commands:
   test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  bench      docs/bench/ratios.csv: speed beside OpenBLAS's factorization
+  bench-guard
+             fails when one of those ratios is too large
+  bench-counts
+             docs/bench/instructions.csv: instructions per evaluation, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
+  extremes [TABLE]
+             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
+  trade [--quick | --resume]
+             docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
+             target/accuracy; --resume: goes on with a run that was cut off)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -33,13 +46,21 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["bench"] => bench::run(),
+        ["bench-guard"] => bench::guard(),
+        ["bench-counts"] => bench::write_counts(),
         ["firmware"] => firmware::run(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),
         ["symbols"] => archive::write_symbols(),
         ["c"] => c::run(),
         ["dist", "--prefix", prefix] => dist::run(prefix),
+        ["trade"] => trade::run(false),
+        ["trade", "--resume"] => trade::run(true),
+        ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["header"] => header::run(),
+        ["extremes"] => extremes(&[]),
+        ["extremes", table] => extremes(&[table]),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             ExitCode::SUCCESS
@@ -49,4 +70,13 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The complete tables of the extremes.
+fn extremes(table: &[&str]) -> ExitCode {
+    let folder = root().join("docs/accuracy");
+    let mut command =
+        cargo(&["run", "--release", "--quiet", "--package", "nekton-tests", "--example", "extremes", "--"]);
+    let done = command.arg(folder).args(table).status().is_ok_and(|status| status.success());
+    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -33,6 +33,13 @@ impl Steps {
         self.done.push((name.into(), start.elapsed(), outcome));
     }
 
+    /// One step alone.
+    pub fn only(name: &str, action: impl FnOnce() -> Outcome) -> ExitCode {
+        let mut steps = Steps::default();
+        steps.run(name, action);
+        steps.finish()
+    }
+
     /// Runs a command as a step.
     pub fn command(&mut self, name: &str, command: &mut Command) {
         self.run(name, || execute(command));

@@ -4,6 +4,7 @@ use crate::bare::{CORTEX_M, Compiler, compiler, installed};
 use crate::c;
 use crate::firmware;
 use crate::steps::{Outcome, Steps, cargo, execute, require, root};
+use crate::trade;
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
@@ -38,12 +39,14 @@ pub fn run() -> ExitCode {
         "core tests with fft",
         &mut cargo(&["test", "--package", "nekton", "--features", "fft", "--no-fail-fast"]),
     );
+    steps.run("instructions per evaluation", crate::bench::held);
     steps.command(
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     );
     c::add(&mut steps);
     scenes(&mut steps);
+    steps.run("speed against accuracy, quickly", trade::quick);
     steps.run("matlab (in octave)", matlab);
     steps.finish()
 }

@@ -24,6 +24,7 @@ impl Place {
         place
     }
     pub fn put(&self, name: &str, text: impl AsRef<[u8]>) {
+        fs::create_dir_all(self.path(name).parent().unwrap()).unwrap();
         fs::write(self.path(name), text).unwrap();
     }
     pub fn path(&self, name: &str) -> PathBuf {

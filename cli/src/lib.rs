@@ -1,0 +1,135 @@
+//! The command `nekton`: scene files in; tables, plots and an animated report out. A library only so that the developers'
+//! commands draw with the same [`plots`].
+
+mod evaluate;
+mod ingredients;
+mod output;
+mod plan;
+pub mod plots;
+mod record;
+mod report;
+mod run;
+mod scene_file;
+mod setup;
+mod trade;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  2  bad input: one line on standard error names file, line and a way out; nothing was written
+  3  the run stopped before its end (contact, a singular matrix, a tolerance that cannot be met); the results up to
+     then were written, and report.html says why it stopped";
+
+/// Rigid and articulated bodies in a two-dimensional ideal fluid.
+#[derive(Parser)]
+#[command(name = "nekton", version, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate a scene and write tables, plots and a report
+    #[command(after_help = EXIT_CODES)]
+    Run {
+        /// Scene file (TOML)
+        scene: PathBuf,
+        /// Folder for trajectory.csv, energy.csv, torque.csv, report.html and the plots as SVG
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+        /// Choose nodes, integrator and step for this relative error, by SCENE's table of `nekton trade` or by measuring a few
+        #[arg(long, value_name = "E", value_parser = positive)]
+        error: Option<f64>,
+    },
+    /// Measure the trade between speed and accuracy: many settings against a converged reference
+    #[command(after_help = EXIT_CODES)]
+    Trade {
+        /// Scene file (TOML)
+        scene: PathBuf,
+        /// Folder for trade.csv, trade.svg, recommended.csv and reference.csv [default: SCENE with the ending .trade]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Relative errors for which a setting is recommended
+        #[arg(long, value_name = "E", value_parser = positive, default_values_t = [1e-3, 1e-6, 1e-9])]
+        error: Vec<f64>,
+        /// Seconds after which a run is given up and noted as "over the limit"
+        #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 5.0)]
+        limit: f64,
+        /// Simulated time, if not all that can be compared
+        #[arg(long, value_name = "T", value_parser = positive)]
+        until: Option<f64>,
+        /// Only the usual force, quadrature and precision
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Evaluate matrices, forces and energies once, at the initial state
+    #[command(after_help = EXIT_CODES)]
+    Evaluate {
+        /// Scene file (TOML)
+        scene: PathBuf,
+        /// Print one JSON object instead of a table
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show what will be computed and what it costs
+    #[command(after_help = EXIT_CODES)]
+    Plan {
+        /// Scene file (TOML)
+        scene: PathBuf,
+        /// Show what each ingredient of the scene adds, by counts
+        #[arg(long)]
+        ingredients: bool,
+        /// With --ingredients: as CSV
+        #[arg(long, requires = "ingredients")]
+        csv: bool,
+    },
+}
+
+/// A number greater than 0.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("must be a number greater than 0".into()),
+    }
+}
+
+/// How a command ended that did not fail.
+pub(crate) enum Ending {
+    /// As asked.
+    Complete,
+    /// With results, but before the end.
+    Stopped,
+}
+
+/// Does what the arguments of the process say.
+pub fn command() -> ExitCode {
+    let ending = match Arguments::parse().command {
+        Command::Run { scene, out, error } => run::run(&scene, &out, error),
+        Command::Trade { scene, out, error, limit, until, quick } => {
+            trade::trade(&scene, &trade::Wish { out, errors: error, limit, until, quick })
+        }
+        Command::Evaluate { scene, json } => evaluate::evaluate(&scene, json),
+        Command::Plan { scene, ingredients: false, .. } => plan::plan(&scene),
+        Command::Plan { scene, csv, .. } => ingredients::print(&scene, csv),
+    };
+    match ending {
+        Ok(Ending::Complete) => ExitCode::SUCCESS,
+        Ok(Ending::Stopped) => ExitCode::from(3),
+        Err(problem) => {
+            eprintln!("{problem}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints to standard output; a reader that has gone away (`nekton … | head`) is no error.
+pub(crate) fn say(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

@@ -1,0 +1,138 @@
+//! One way to compute a scene: what can be traded for speed.
+
+use nekton::scalar::Real;
+use nekton::scene::{Body, Description, ForceFormula, Link, Quadrature, Scene, Wall};
+use nekton::{Method, Model};
+
+use crate::scene_file::Integrator;
+
+/// Everything that decides how exact and how costly a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Quadrature of boundary integrals.
+    pub quadrature: Quadrature,
+    /// Formula of the Christoffel force.
+    pub force: ForceFormula,
+    /// `f32` instead of `f64`.
+    pub single: bool,
+    /// Integrator with its step or tolerance.
+    pub integrator: Integrator,
+    /// Nodes of the link that has most; all other boundaries in proportion.
+    pub nodes: usize,
+}
+
+impl Setting {
+    /// The names under which it stands in tables.
+    pub fn names(&self) -> [&'static str; 4] {
+        [
+            match self.quadrature {
+                Quadrature::Graded => "graded",
+                Quadrature::Plain => "plain",
+            },
+            match self.force {
+                ForceFormula::ExactGradient => "exact",
+                ForceFormula::Boundary => "boundary",
+            },
+            if self.single { "f32" } else { "f64" },
+            method_name(self.integrator),
+        ]
+    }
+}
+
+/// Name of an integrator, as in scene files.
+pub fn method_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::Rk4 { .. } => "rk4",
+        Integrator::Abm4 { .. } => "abm4",
+        Integrator::Gauss6 { .. } => "gauss6",
+        Integrator::Adams { .. } => "adams",
+    }
+}
+
+/// Step or tolerance of an integrator.
+pub fn parameter(integrator: Integrator) -> f64 {
+    match integrator {
+        Integrator::Rk4 { step } | Integrator::Abm4 { step } | Integrator::Gauss6 { step } => step,
+        Integrator::Adams { tolerance } => tolerance,
+    }
+}
+
+/// The integrator of a name.
+pub fn integrator(name: &str, value: f64) -> Option<Integrator> {
+    Some(match name {
+        "rk4" => Integrator::Rk4 { step: value },
+        "abm4" => Integrator::Abm4 { step: value },
+        "gauss6" => Integrator::Gauss6 { step: value },
+        "adams" => Integrator::Adams { tolerance: value },
+        _ => return None,
+    })
+}
+
+/// What the absolute tolerance is a part of: 1, or the mean diameter of the smallest link if that is less (m). Otherwise a body
+/// of a micrometre would be lost in a tolerance that suits one of a metre.
+pub fn unit<R: Real>(model: &Model<'_, R>) -> f64 {
+    let links = (0..model.link_count()).filter_map(|i| model.link(i));
+    links.map(|link| link.perimeter.to_f64() / std::f64::consts::PI).fold(1.0, f64::min)
+}
+
+/// The core's method, with `unit` of the model.
+pub fn method<R: Real>(integrator: Integrator, unit: f64) -> Method<R> {
+    match integrator {
+        Integrator::Rk4 { step } => Method::Rk4 { step: R::lit(step) },
+        Integrator::Abm4 { step } => Method::Abm4 { step: R::lit(step) },
+        Integrator::Gauss6 { step } => Method::Gauss6 { step: R::lit(step) },
+        Integrator::Adams { tolerance } => {
+            Method::Adams { relative: R::lit(tolerance), absolute: R::lit(tolerance * unit) }
+        }
+    }
+}
+
+/// A scene with other nodes, force or quadrature.
+pub struct Variant<'a, R> {
+    /// The scene.
+    pub base: &'a Scene<'a, R>,
+    /// Factor of all node counts.
+    pub scale: f64,
+    /// Force.
+    pub force: ForceFormula,
+    /// Quadrature.
+    pub quadrature: Quadrature,
+}
+
+impl<R> Variant<'_, R> {
+    fn nodes(&self, nodes: usize) -> usize {
+        scaled(nodes, self.scale)
+    }
+}
+
+/// An even number of nodes near a multiple of what the scene asks for; at least 8.
+pub fn scaled(nodes: usize, scale: f64) -> usize {
+    (2 * (0.5 * nodes as f64 * scale).round() as usize).max(8)
+}
+
+impl<R: Real> Description<R> for Variant<'_, R> {
+    fn settings(&self) -> Scene<'_, R> {
+        Scene { force: self.force, quadrature: self.quadrature, ..*self.base }
+    }
+    fn tank(&self) -> Option<Wall<'_, R>> {
+        self.base.tank.map(|w| Wall { nodes: self.nodes(w.nodes), ..w })
+    }
+    fn obstacle_count(&self) -> usize {
+        self.base.obstacles.len()
+    }
+    fn obstacle(&self, i: usize) -> Option<Wall<'_, R>> {
+        self.base.obstacles.get(i).map(|w| Wall { nodes: self.nodes(w.nodes), ..*w })
+    }
+    fn body_count(&self) -> usize {
+        self.base.bodies.len()
+    }
+    fn body(&self, b: usize) -> Option<Body<'_, R>> {
+        self.base.bodies.get(b).copied()
+    }
+    fn link_count(&self, b: usize) -> usize {
+        self.base.link_count(b)
+    }
+    fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
+        self.base.link(b, l).map(|link| Link { nodes: self.nodes(link.nodes), ..link })
+    }
+}

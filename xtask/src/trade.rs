@@ -1,0 +1,264 @@
+//! `cargo xtask trade`: measures speed against accuracy of every scene, computes the paper's figures anew, and fills the tables
+//! of docs/accuracy.md.
+
+use crate::steps::{Outcome, ask, cargo, execute, read, root};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+type Result<T> = std::result::Result<T, String>;
+
+/// Seconds for one run of a setting.
+const LIMIT: &str = "0.4";
+
+/// The whole, into docs/accuracy; with `resume` runs that an earlier call finished are not repeated.
+pub fn run(resume: bool) -> ExitCode {
+    let measured = (|| {
+        if !resume {
+            let _ = fs::remove_dir_all(root().join("target/trade"));
+        }
+        let page = root().join("docs/accuracy.md");
+        let folder = root().join("docs/accuracy");
+        measure(&scenes()?, &folder, &[])?;
+        let text = fill(&read(&page)?, &folder)?;
+        fs::write(&page, text).map_err(|e| format!("{}: {e}", page.display()))
+    })();
+    match measured {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// A minute's worth of it into target/accuracy, for the tests.
+pub fn quick() -> Outcome {
+    let tried = (|| {
+        let folder = root().join("target/accuracy");
+        let _ = fs::remove_dir_all(&folder);
+        let _ = fs::remove_dir_all(root().join("target/trade"));
+        let chosen = scenes()?.into_iter().filter(|s| name(s) == "two_eggs").collect::<Vec<_>>();
+        measure(&chosen, &folder, &["--quick", "--until", "2"])?;
+        let page = fill(&read(&root().join("docs/accuracy.md"))?, &folder)?;
+        fs::write(folder.join("accuracy.md"), page).map_err(|e| e.to_string())
+    })();
+    match tried {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
+fn scenes() -> Result<Vec<PathBuf>> {
+    let folder = root().join("scenes");
+    let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    Ok(files)
+}
+
+fn name(scene: &Path) -> String {
+    scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+fn done(command: &mut Command) -> Result<()> {
+    match execute(command) {
+        Outcome::Passed => Ok(()),
+        Outcome::Failed(why) | Outcome::Skipped(why) => Err(why),
+    }
+}
+
+/// Everything that docs/accuracy holds, from runs of the command and of the example `paper`.
+fn measure(traded: &[PathBuf], folder: &Path, few: &[&str]) -> Result<()> {
+    let quick = !few.is_empty();
+    fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let put = |file: &str, text: &str| {
+        fs::write(folder.join(file), text).map_err(|e| format!("{}: {e}", folder.join(file).display()))
+    };
+    done(&mut cargo(&["build", "--release", "--package", "nekton-cli"]))?;
+    done(&mut cargo(&["build", "--release", "--package", "nekton-tests", "--example", "paper"]))?;
+    let nekton = || Command::new(root().join("target/release/nekton"));
+    let paper = || Command::new(root().join("target/release/examples/paper"));
+
+    let mut ingredients = String::new();
+    for scene in scenes()? {
+        let table = ask(nekton().arg("plan").arg(&scene).args(["--ingredients", "--csv"]))?;
+        let rows = if ingredients.is_empty() { table.as_str() } else { table.split_once('\n').unwrap_or_default().1 };
+        ingredients += rows;
+    }
+    put("ingredients.csv", &ingredients)?;
+
+    let mut passing = paper();
+    passing.arg("passing").args(quick.then_some("--quick")).arg(folder);
+    done(&mut passing)?;
+    if !quick {
+        let results = ["fish", "fish_between_obstacles"].map(|s| (s, root().join("target/trade/run").join(s)));
+        for (scene, out) in &results {
+            done(nekton().arg("run").arg(root().join(format!("scenes/{scene}.toml"))).arg("--out").arg(out))?;
+        }
+        done(paper().arg("fish").args(results.map(|(_, out)| out)).arg(folder))?;
+    }
+
+    let mut summary = String::new();
+    for scene in traded {
+        let (name, out) = (name(scene), root().join("target/trade").join(name(scene)));
+        done(nekton().arg("trade").arg(scene).arg("--out").arg(&out).args(["--limit", LIMIT]).args(few))?;
+        let reference = Csv::parse(&read(&out.join("reference.csv"))?);
+        let mark = reference.cell(0, "scene")?.to_owned();
+        // The mark serves the command only.
+        let table: String = read(&out.join("trade.csv"))?
+            .lines()
+            .filter_map(|l| l.strip_prefix(&format!("{mark},")).or(l.strip_prefix("scene,")))
+            .map(|l| format!("{l}\n"))
+            .collect();
+        put(&format!("{name}.csv"), &table)?;
+        fs::copy(out.join("trade.svg"), folder.join(format!("{name}.svg"))).map_err(|e| e.to_string())?;
+        let recommended = read(&out.join("recommended.csv"))?;
+        for (k, line) in recommended.lines().enumerate().skip(usize::from(!summary.is_empty())) {
+            summary += &format!("{},{line}\n", if k == 0 { "scene" } else { &name });
+        }
+    }
+    put("recommended.csv", &summary)
+}
+
+/// A table without quotes.
+struct Csv {
+    names: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Csv {
+    fn parse(text: &str) -> Csv {
+        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
+        let mut lines = text.lines();
+        Csv { names: lines.next().map(cells).unwrap_or_default(), rows: lines.map(cells).collect() }
+    }
+
+    fn cell(&self, row: usize, name: &str) -> Result<&str> {
+        let column = self.names.iter().position(|n| n == name).ok_or_else(|| format!("no column {name}"))?;
+        self.rows.get(row).and_then(|r| r.get(column)).map(String::as_str).ok_or_else(|| format!("no row {row}"))
+    }
+
+    fn column<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s str> {
+        (0..self.rows.len()).filter_map(move |r| self.cell(r, name).ok())
+    }
+}
+
+/// Puts the tables of a folder between the page's markers. A table without data, or a marker without its end, is an error.
+fn fill(page: &str, folder: &Path) -> Result<String> {
+    let csv = |file: &str| read(&folder.join(file)).map(|text| Csv::parse(&text));
+    let mut page = page.to_owned();
+    for (marker, table) in [
+        ("recommended", recommended_table(&csv("recommended.csv")?)?),
+        ("passing", passing_table(&csv("passing.csv")?)?),
+        ("ingredients", ingredients_table(&csv("ingredients.csv")?)?),
+    ] {
+        page = between(&page, marker, &table)?;
+    }
+    Ok(page)
+}
+
+fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+    let (begin, end) = (format!("<!-- begin {marker} -->"), format!("<!-- end {marker} -->"));
+    let cut = page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
+    let (head, tail) = cut.ok_or_else(|| format!("docs/accuracy.md: no {begin} … {end}"))?;
+    Ok(format!("{head}{begin}\n{table}{end}{tail}"))
+}
+
+/// A number with two digits, as people write it.
+fn short(text: &str) -> String {
+    match text.parse::<f64>() {
+        Ok(0.0) => "0".into(),
+        Ok(x) if (0.01..1000.0).contains(&x.abs()) => {
+            format!("{}", format!("{x:.1e}").parse::<f64>().unwrap_or(x))
+        }
+        Ok(x) => format!("{x:.0e}"),
+        Err(_) => "–".into(),
+    }
+}
+
+fn recommended_table(table: &Csv) -> Result<String> {
+    let mut text = String::from(
+        "| scene | to t = | error 1e-3 | s/s | error 1e-6 | s/s | error 1e-9 | s/s |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut scenes: Vec<&str> = table.column("scene").collect();
+    scenes.dedup();
+    for scene in scenes {
+        let rows: Vec<usize> = (0..table.rows.len()).filter(|r| table.cell(*r, "scene") == Ok(scene)).collect();
+        let mut line = format!("| [{scene}](accuracy/{scene}.svg) | {} |", short(table.cell(rows[0], "until")?));
+        for row in rows {
+            let get = |name: &str| table.cell(row, name);
+            if get("nodes")?.is_empty() {
+                line += " – | – |";
+                continue;
+            }
+            let mut setting = format!("{}, {} {}", get("nodes")?, get("integrator")?, short(get("step_or_tolerance")?));
+            for (name, usual) in [("precision", "f64"), ("force", "exact"), ("quadrature", "graded")] {
+                if get(name)? != usual {
+                    setting = format!("{setting}, {}", get(name)?);
+                }
+            }
+            line += &format!(" {setting} | {} |", short(get("seconds_per_second")?));
+        }
+        text += &format!("{line}\n");
+    }
+    Ok(text)
+}
+
+fn passing_table(table: &Csv) -> Result<String> {
+    let mut counts: Vec<&str> = Vec::new();
+    for n in table.column("nodes") {
+        if !counts.contains(&n) {
+            counts.push(n);
+        }
+    }
+    counts.sort_by_key(|n| n.parse::<usize>().unwrap_or(0));
+    let schemes = [("panels", "constant panels"), ("paper", "the paper's scheme"), ("nekton", "nekton")];
+    let mut text = String::from("| nodes per body |");
+    for (_, title) in schemes {
+        text += &format!(" {title}: position (m), angle (rad) | time (s) |");
+    }
+    text += "\n|---|---|---|---|---|---|---|\n";
+    for n in counts {
+        let mut line = format!("| {n} |");
+        for (scheme, _) in schemes {
+            let row = (0..table.rows.len())
+                .find(|r| table.cell(*r, "scheme") == Ok(scheme) && table.cell(*r, "nodes") == Ok(n));
+            line += &match row {
+                Some(row) => format!(
+                    " {}, {} | {} |",
+                    short(table.cell(row, "position")?),
+                    short(table.cell(row, "angle")?),
+                    short(table.cell(row, "seconds")?)
+                ),
+                None => " – | – |".into(),
+            };
+        }
+        text += &format!("{line}\n");
+    }
+    Ok(text)
+}
+
+fn ingredients_table(table: &Csv) -> Result<String> {
+    let mut text = String::from(
+        "| scene | ingredient | unknowns | right-hand sides | bytes of the model | of a simulation | operations |\n\
+        |---|---|---|---|---|---|---|\n",
+    );
+    for row in 0..table.rows.len() {
+        let get = |name: &str| table.cell(row, name);
+        if get("present")? == "yes" {
+            text += &format!(
+                "| {} | {} | {} | {} | {} | {} | {} |\n",
+                get("scene")?,
+                get("ingredient")?,
+                get("unknowns")?,
+                get("right_hand_sides")?,
+                get("model_bytes")?,
+                get("simulation_bytes")?,
+                short(get("operations")?)
+            );
+        }
+    }
+    Ok(text)
+}
