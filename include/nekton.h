@@ -574,7 +574,7 @@ typedef struct nekton_resolution {
     double force;
     /** Error of the constant density as a solution of the boundary system. */
     double quadrature;
-    /** Bound of the relative error of added mass and force: 20 times the largest of the three. */
+    /** Bound of the relative error of added mass and force: 100 times the largest of the three. */
     double bound;
 } nekton_resolution;
 
@@ -840,7 +840,7 @@ typedef struct nekton32_resolution {
     float force;
     /** Error of the constant density as a solution of the boundary system. */
     float quadrature;
-    /** Bound of the relative error of added mass and force: 20 times the largest of the three. */
+    /** Bound of the relative error of added mass and force: 100 times the largest of the three. */
     float bound;
 } nekton32_resolution;
 

@@ -364,7 +364,7 @@ fn a_tolerance_in_space_that_is_missed_is_one_notice_on_the_terminal_and_in_the_
     let (_, text) = notices[0].split_once("notice: ").unwrap();
     assert!(place.read("results/report.html").replace("&quot;", "\"").contains(text));
     assert!(place.read("results/resolution.svg").contains("asked"));
-    let met = Place::new(&changed("duration = 0.5", "duration = 0.5\ntolerance = 0.5"));
+    let met = Place::new(&changed("duration = 0.5", "duration = 0.5\ntolerance = 50"));
     assert!(!met.run().out.contains("notice"));
 }
 

@@ -31,9 +31,9 @@ pub struct Resolution<R> {
 }
 
 impl<R: Real> Resolution<R> {
-    /// Bound of the relative error of added mass and force: 20 times the largest indicator.
+    /// Bound of the relative error of added mass and force: 100 times the largest indicator.
     pub fn bound(&self) -> R {
-        self.mass.max(self.force).max(self.quadrature) * R::lit(20.0)
+        self.mass.max(self.force).max(self.quadrature) * R::lit(100.0)
     }
 
     pub(crate) fn max(&self, other: &Self) -> Self {

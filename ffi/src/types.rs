@@ -455,7 +455,7 @@ pub struct ResolutionOut<R> {
     pub force: R,
     /// Error of the constant density as a solution of the boundary system.
     pub quadrature: R,
-    /// Bound of the relative error of added mass and force: 20 times the largest of the three.
+    /// Bound of the relative error of added mass and force: 100 times the largest of the three.
     pub bound: R,
 }
 
