@@ -34,6 +34,8 @@ enum {
     NEKTON_OK = 0,
     /** the outline runs clockwise and was turned round */
     NEKTON_N_OUTLINE_REVERSED = 1,
+    /** the tolerance asked for in space is not met */
+    NEKTON_N_UNRESOLVED = 2,
     /** the memory given is smaller than required */
     NEKTON_E_MEMORY_TOO_SMALL = -1,
     /** a value is not finite */
@@ -42,7 +44,7 @@ enum {
     NEKTON_E_OUT_OF_RANGE = -3,
     /** the scene has no body */
     NEKTON_E_EMPTY_SCENE = -4,
-    /** a node count must be even, at least 8 and at most 65536 */
+    /** a node count must be even, at least 8 and at most 65536, or 0 for automatic */
     NEKTON_E_NODE_COUNT = -5,
     /** the shape's measures do not describe an outline */
     NEKTON_E_BAD_SHAPE = -6,
@@ -167,6 +169,15 @@ enum {
 /** A boundary integral, as an independent cross-check; not with a prescribed joint or root. */
 #define NEKTON_FORCE_BOUNDARY 1
 
+/**
+ * Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
+ * accuracy down to tiny gaps. Costs nothing for boundaries that are far apart.
+ */
+#define NEKTON_QUADRATURE_GRADED 0
+
+/** Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed. */
+#define NEKTON_QUADRATURE_PLAIN 1
+
 /** Classical Runge-Kutta of order 4, fixed step, 4 evaluations a step. */
 #define NEKTON_METHOD_RK4 1
 
@@ -177,7 +188,7 @@ enum {
 #define NEKTON_METHOD_ADAMS 3
 
 /**
- * Implicit Gauss-Legendre of order 6, fixed step, about 20 evaluations a step: the energy does not drift. UNSUPPORTED in
+ * Implicit Gauss-Legendre of order 6, fixed step, 20 to 40 evaluations a step: the energy does not drift. UNSUPPORTED in
  * archives for microcontrollers, unless they were built with the feature implicit.
  */
 #define NEKTON_METHOD_GAUSS6 4
@@ -298,7 +309,7 @@ typedef struct nekton_wall_def {
     double position[2];
     /** Turn about the outline's own origin, rad. */
     double angle;
-    /** Nodes: even, 8 to 65536. */
+    /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     double circulation;
@@ -348,7 +359,7 @@ typedef struct nekton_signal {
 typedef struct nekton_link_def {
     /** Outline, drawn in the link's own frame (any origin). */
     struct nekton_shape shape;
-    /** Nodes: even, 8 to 65536. */
+    /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
     /** Circulation of the fluid around the link, counter-clockwise, m^2/s. */
     double circulation;
@@ -424,6 +435,13 @@ typedef struct nekton_scene_def {
     int32_t circulation;
     /** NEKTON_FORCE_... */
     int32_t force;
+    /** NEKTON_QUADRATURE_... */
+    int32_t quadrature;
+    /**
+     * Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
+     * returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+     */
+    double tolerance;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
     int32_t shortcuts;
     /** The fluid is inside this outline; NULL: no tank. */
@@ -482,6 +500,8 @@ typedef struct nekton_plan {
     size_t moving_unknowns;
     /** Right-hand sides solved (transposed ones included). */
     size_t right_hand_sides;
+    /** Relative error in space that is asked for; 0: none. */
+    double tolerance;
     /** Bytes of the model. */
     size_t model_bytes;
     /** Bytes of a simulation. */
@@ -546,12 +566,16 @@ typedef struct nekton_energy {
     double work;
 } nekton_energy;
 
-/** Relative error indicators of the space discretization. */
+/** Relative error indicators of the space discretization. They do not see an error of the shape itself. */
 typedef struct nekton_resolution {
-    /** Asymmetry of the discrete added mass, relative to its largest entry. */
+    /** Asymmetry of the discrete added mass before it is symmetrized. */
     double mass;
-    /** Difference of two forms of the force, relative to the largest force. */
+    /** Difference of two halves of the force that should be equal, relative to the largest force; 0 with the boundary formula. */
     double force;
+    /** Error of the constant density as a solution of the boundary system. */
+    double quadrature;
+    /** Bound of the relative error of added mass and force: 20 times the largest of the three. */
+    double bound;
 } nekton_resolution;
 
 /** The smallest gap between two boundaries of which one moves. */
@@ -613,7 +637,7 @@ typedef struct nekton32_wall_def {
     float position[2];
     /** Turn about the outline's own origin, rad. */
     float angle;
-    /** Nodes: even, 8 to 65536. */
+    /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     float circulation;
@@ -663,7 +687,7 @@ typedef struct nekton32_signal {
 typedef struct nekton32_link_def {
     /** Outline, drawn in the link's own frame (any origin). */
     struct nekton32_shape shape;
-    /** Nodes: even, 8 to 65536. */
+    /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
     /** Circulation of the fluid around the link, counter-clockwise, m^2/s. */
     float circulation;
@@ -739,6 +763,13 @@ typedef struct nekton32_scene_def {
     int32_t circulation;
     /** NEKTON_FORCE_... */
     int32_t force;
+    /** NEKTON_QUADRATURE_... */
+    int32_t quadrature;
+    /**
+     * Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
+     * returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+     */
+    float tolerance;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
     int32_t shortcuts;
     /** The fluid is inside this outline; NULL: no tank. */
@@ -801,12 +832,16 @@ typedef struct nekton32_energy {
     float work;
 } nekton32_energy;
 
-/** Relative error indicators of the space discretization. */
+/** Relative error indicators of the space discretization. They do not see an error of the shape itself. */
 typedef struct nekton32_resolution {
-    /** Asymmetry of the discrete added mass, relative to its largest entry. */
+    /** Asymmetry of the discrete added mass before it is symmetrized. */
     float mass;
-    /** Difference of two forms of the force, relative to the largest force. */
+    /** Difference of two halves of the force that should be equal, relative to the largest force; 0 with the boundary formula. */
     float force;
+    /** Error of the constant density as a solution of the boundary system. */
+    float quadrature;
+    /** Bound of the relative error of added mass and force: 20 times the largest of the three. */
+    float bound;
 } nekton32_resolution;
 
 /** The smallest gap between two boundaries of which one moves. */
@@ -875,7 +910,7 @@ nekton_status nekton_link_def_init(struct nekton_link_def *def);
 /**
  * Memory that nekton_model_init needs for this scene. Checks everything but geometry.
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
- * BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+ * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
  */
 nekton_status nekton_model_req(const struct nekton_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
@@ -932,6 +967,12 @@ nekton_status nekton_model_notice(const struct nekton_model *model,
                                   size_t notice,
                                   struct nekton_place *place,
                                   nekton_status *status);
+
+/**
+ * Nodes on a boundary, given or automatic.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (no such place). Any thread.
+ */
+nekton_status nekton_model_nodes(const struct nekton_model *model, const struct nekton_place *place, size_t *nodes);
 
 /**
  * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
@@ -1038,7 +1079,8 @@ nekton_status nekton_sim_set_state(struct nekton_sim *sim,
 nekton_status nekton_sim_restart(struct nekton_sim *sim);
 
 /**
- * One step of the method (ADAMS: one step of its own choice).
+ * One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
+ * a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
  * simulation is then as it was, bit for bit. One thread per simulation.
  */
@@ -1046,7 +1088,8 @@ nekton_status nekton_sim_step(struct nekton_sim *sim, struct nekton_diag *diag);
 
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
- * the step function of a controller: set channels, advance by a sample time, read the state.
+ * the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton_sim_step,
+ * with the largest bound met.
  * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
  * nekton_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
@@ -1197,7 +1240,17 @@ nekton_status nekton_sim_energy(struct nekton_sim *sim, struct nekton_energy *en
 nekton_status nekton_sim_impulse(struct nekton_sim *sim, double *impulse, struct nekton_diag *diag);
 
 /**
- * Error indicators of the space discretization at the state shown. 12 links + 2 solves.
+ * Error indicators of the steps: the largest over the last call that stepped; before the first step those of the state
+ * shown. They come with every step at the cost of one solve; see nekton_scene_def.tolerance.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED; before the first step CONTACT, SINGULAR, NON_FINITE_STATE. One thread per
+ * simulation.
+ */
+nekton_status nekton_sim_indicators(struct nekton_sim *sim,
+                                    struct nekton_resolution *indicators,
+                                    struct nekton_diag *diag);
+
+/**
+ * Error indicators of the space discretization at the state shown, from all of the added mass. 6 links + 7 solves.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
  */
 nekton_status nekton_sim_resolution(struct nekton_sim *sim,
@@ -1245,7 +1298,7 @@ nekton_status nekton32_link_def_init(struct nekton32_link_def *def);
 /**
  * Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
- * BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+ * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
  */
 nekton_status nekton32_model_req(const struct nekton32_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
@@ -1302,6 +1355,14 @@ nekton_status nekton32_model_notice(const struct nekton32_model *model,
                                     size_t notice,
                                     struct nekton_place *place,
                                     nekton_status *status);
+
+/**
+ * Nodes on a boundary, given or automatic.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (no such place). Any thread.
+ */
+nekton_status nekton32_model_nodes(const struct nekton32_model *model,
+                                   const struct nekton_place *place,
+                                   size_t *nodes);
 
 /**
  * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
@@ -1408,7 +1469,8 @@ nekton_status nekton32_sim_set_state(struct nekton32_sim *sim,
 nekton_status nekton32_sim_restart(struct nekton32_sim *sim);
 
 /**
- * One step of the method (ADAMS: one step of its own choice).
+ * One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
+ * a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
  * simulation is then as it was, bit for bit. One thread per simulation.
  */
@@ -1416,12 +1478,15 @@ nekton_status nekton32_sim_step(struct nekton32_sim *sim, struct nekton_diag *di
 
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
- * the step function of a controller: set channels, advance by a sample time, read the state.
+ * the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton32_sim_step,
+ * with the largest bound met.
  * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
  * nekton32_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
-nekton_status nekton32_sim_advance(struct nekton32_sim *sim, float t_end, struct nekton_diag *diag);
+nekton_status nekton32_sim_advance(struct nekton32_sim *sim,
+                                   float t_end,
+                                   struct nekton_diag *diag);
 
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
@@ -1570,7 +1635,17 @@ nekton_status nekton32_sim_energy(struct nekton32_sim *sim, struct nekton32_ener
 nekton_status nekton32_sim_impulse(struct nekton32_sim *sim, float *impulse, struct nekton_diag *diag);
 
 /**
- * Error indicators of the space discretization at the state shown. 12 links + 2 solves.
+ * Error indicators of the steps: the largest over the last call that stepped; before the first step those of the state
+ * shown. They come with every step at the cost of one solve; see nekton_scene_def.tolerance.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED; before the first step CONTACT, SINGULAR, NON_FINITE_STATE. One thread per
+ * simulation.
+ */
+nekton_status nekton32_sim_indicators(struct nekton32_sim *sim,
+                                      struct nekton32_resolution *indicators,
+                                      struct nekton_diag *diag);
+
+/**
+ * Error indicators of the space discretization at the state shown, from all of the added mass. 6 links + 7 solves.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
  */
 nekton_status nekton32_sim_resolution(struct nekton32_sim *sim,
@@ -1632,7 +1707,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
     (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
-     ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + NEKTON_P_S(circulation) * (u) * ((u) + 7))
+     ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + 2 + NEKTON_P_S(circulation) * (u) * ((u) + 7))
 #define NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels) \
     (2 * NEKTON_P_KEPT(bodies, joints, walls, channels) + \
      NEKTON_P_EVALUATION(NEKTON_P_L(bodies, joints), NEKTON_P_C(bodies, joints), \

@@ -108,6 +108,7 @@ template <class R> struct Api;
         static constexpr auto model_link = &P##_model_link;                                                                    \
         static constexpr auto model_joint = &P##_model_joint;                                                                  \
         static constexpr auto model_notice = &P##_model_notice;                                                                \
+        static constexpr auto model_nodes = &P##_model_nodes;                                                                  \
         static constexpr auto model_outline_point = &P##_model_outline_point;                                                  \
         static constexpr auto sim_req = &P##_sim_req;                                                                          \
         static constexpr auto sim_init = &P##_sim_init;                                                                        \
@@ -140,6 +141,7 @@ template <class R> struct Api;
         static constexpr auto sim_gyroscopic = &P##_sim_gyroscopic;                                                            \
         static constexpr auto sim_energy = &P##_sim_energy;                                                                    \
         static constexpr auto sim_impulse = &P##_sim_impulse;                                                                  \
+        static constexpr auto sim_indicators = &P##_sim_indicators;                                                            \
         static constexpr auto sim_resolution = &P##_sim_resolution;                                                            \
         static constexpr auto sim_gap = &P##_sim_gap;                                                                          \
         static constexpr auto sim_counters = &P##_sim_counters;                                                                \
@@ -337,6 +339,11 @@ public:
     {
         return detail::done(Api::model_notice(model_, i, &place, &what));
     }
+    /** Nodes on a boundary, given or automatic. */
+    nekton_status nodes(const nekton_place &place, std::size_t &out) const
+    {
+        return detail::done(Api::model_nodes(model_, &place, &out));
+    }
     /** Point of an outline at a parameter in [0, 2 pi). */
     nekton_status outline_point(const nekton_place &place, R t, std::array<R, 2> &out) const
     {
@@ -505,7 +512,12 @@ public:
     {
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_impulse(sim_, out.data(), d); });
     }
-    /** Error indicators of the space discretization. */
+    /** Error indicators of the steps of the last call that stepped. */
+    nekton_status indicators(typename Api::Resolution &out, nekton_diag *diag = nullptr)
+    {
+        return detail::call(diag, [&](nekton_diag *d) { return Api::sim_indicators(sim_, &out, d); });
+    }
+    /** Error indicators of the space discretization at the state shown, from all of the added mass. */
     nekton_status resolution(typename Api::Resolution &out, nekton_diag *diag = nullptr)
     {
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_resolution(sim_, &out, d); });

@@ -289,8 +289,15 @@ classdef Nekton < handle
         end
 
         function r = resolution(self)
-        %RESOLUTION  Struct of relative error indicators of the space discretization: mass, force.
+        %RESOLUTION  Struct of relative error indicators of the space discretization now, from all of the added mass: mass, force,
+        %   quadrature, and bound, 20 times the largest of them.
             r = nekton_mex('resolution', self.id);
+        end
+
+        function r = indicators(self)
+        %INDICATORS  The same of the steps, the largest since the call before the last step or advance: they come at almost no
+        %   cost. If the scene's run.tolerance is exceeded, step and advance warn (nekton:sim:Unresolved), once until it is met again.
+            r = nekton_mex('indicators', self.id);
         end
 
         function n = counters(self)

@@ -30,6 +30,7 @@ typedef struct {
     nekton_sim *twin; /* evaluates rhs when joints are driven by channels, so that the simulation's channels stay; or NULL */
     nekton_method method;
     nekton_plan plan;
+    bool unresolved; /* the last step gave a notice */
 } object;
 
 static object objects[SLOTS];
@@ -65,6 +66,19 @@ static void check(nekton_status status, const nekton_diag *diag, const char *gro
     strncat(id, name, 50);
     if (diag) nekton_diag_text(diag, text, sizeof text);
     mexErrMsgIdAndTxt(id, "%s", text[0] ? text : nekton_status_text(status));
+}
+
+/* The same for steps: a notice becomes a warning, once until the tolerance is met again. */
+static void stepped(object *o, nekton_status status, const nekton_diag *diag)
+{
+    check(status, diag, "sim");
+    bool before = o->unresolved;
+    o->unresolved = status > 0;
+    if (!o->unresolved || before) return;
+    char id[96] = "nekton:sim:", text[256] = "";
+    strncat(id, nekton_status_name(status), 50);
+    nekton_diag_text(diag, text, sizeof text);
+    mexWarnMsgIdAndTxt(id, "%s", text);
 }
 
 /* ---- arguments ---------------------------------------------------------------------------------------------------- */
@@ -182,7 +196,10 @@ static void optionals(const mxArray *s, mwIndex i, const char *name, double *val
 static void nodes(const mxArray *s, mwIndex i, int32_t shape, size_t *n)
 {
     const mxArray *a = field(s, i, "nodes");
-    if (a) {
+    static const char *const automatic[] = {"auto"};
+    if (a && mxIsChar(a)) {
+        *n = (size_t)word(a, automatic, 1, "nodes");
+    } else if (a) {
         *n = (size_t)whole(a, 0, 65536, "nodes");
     } else if (shape == NEKTON_SHAPE_RECTANGLE || shape == NEKTON_SHAPE_POLYGON) {
         *n = 128;
@@ -339,8 +356,9 @@ static void read_body(const mxArray *a, mwIndex i, nekton_body_def *body)
 static void read_scene(const mxArray *a, nekton_scene_def *scene)
 {
     static const char *const names[] = {"fluid_density", "gravity",   "repulsion_epsilon", "repulsion_alpha", "circulation", "force",
-                                        "shortcuts",     "tank",      "obstacles",         "bodies"};
-    static const char *const circulations[] = {"full", "paper"}, *const forces[] = {"exact", "boundary"};
+                                        "quadrature",    "tolerance", "shortcuts",         "tank",            "obstacles",   "bodies"};
+    static const char *const circulations[] = {"full", "paper"}, *const forces[] = {"exact", "boundary"},
+                      *const quadratures[] = {"graded", "plain"};
     known(a, names, COUNT(names), "scene");
     check(nekton_scene_def_init(scene, sizeof *scene, NEKTON_ABI_VERSION), NULL, "scene");
     optional(a, 0, "fluid_density", &scene->fluid_density);
@@ -350,6 +368,8 @@ static void read_scene(const mxArray *a, nekton_scene_def *scene)
     const mxArray *f;
     if ((f = field(a, 0, "circulation"))) scene->circulation = word(f, circulations, COUNT(circulations), "circulation");
     if ((f = field(a, 0, "force"))) scene->force = word(f, forces, COUNT(forces), "force");
+    if ((f = field(a, 0, "quadrature"))) scene->quadrature = word(f, quadratures, COUNT(quadratures), "quadrature");
+    optional(a, 0, "tolerance", &scene->tolerance);
     if ((f = field(a, 0, "shortcuts"))) scene->shortcuts = (int32_t)whole(f, 0, 1, "shortcuts");
     if ((f = field(a, 0, "tank"))) {
         nekton_wall_def *tank = mxCalloc(1, sizeof *tank);
@@ -446,7 +466,8 @@ static void plan(call *c)
     static const char *names[] = {"formulation", "fluid",       "gravity",          "repulsion",              "circulation",
                                   "links",       "walls",       "joints",           "channels",               "notices",
                                   "coordinates", "free_coordinates", "prescribed_coordinates", "state_len",   "unknowns",
-                                  "moving_unknowns", "right_hand_sides", "model_bytes", "sim_bytes",          "operations"};
+                                  "moving_unknowns", "right_hand_sides", "model_bytes", "sim_bytes",          "operations",
+                                  "tolerance"};
     double v[] = {p->formulation,           p->fluid,
                   p->gravity,               p->repulsion,
                   p->circulation,           (double)p->links,
@@ -456,7 +477,8 @@ static void plan(call *c)
                   (double)p->prescribed_coordinates, (double)p->state_len,
                   (double)p->unknowns,      (double)p->moving_unknowns,
                   (double)p->right_hand_sides, (double)p->model_bytes,
-                  (double)p->sim_bytes,     p->operations};
+                  (double)p->sim_bytes,     p->operations,
+                  p->tolerance};
     c->plhs[0] = record(names, v, COUNT(names));
 }
 
@@ -565,7 +587,8 @@ static void restart(call *c) { check(nekton_sim_restart(get(c->prhs[0])->sim), N
 static void step(call *c)
 {
     nekton_diag diag;
-    check(nekton_sim_step(get(c->prhs[0])->sim, &diag), &diag, "sim");
+    object *o = get(c->prhs[0]);
+    stepped(o, nekton_sim_step(o->sim, &diag), &diag);
 }
 
 static void advance(call *c)
@@ -573,7 +596,7 @@ static void advance(call *c)
     object *o = get(c->prhs[0]);
     nekton_diag diag;
     double t = number(c->prhs[1], "t");
-    check(nekton_sim_advance(o->sim, t, &diag), &diag, "sim");
+    stepped(o, nekton_sim_advance(o->sim, t, &diag), &diag);
 }
 
 static void advance_dense(call *c)
@@ -581,7 +604,7 @@ static void advance_dense(call *c)
     object *o = get(c->prhs[0]);
     nekton_diag diag;
     double t = number(c->prhs[1], "t"), stop = number(c->prhs[2], "t_stop");
-    check(nekton_sim_advance_dense(o->sim, t, stop, &diag), &diag, "sim");
+    stepped(o, nekton_sim_advance_dense(o->sim, t, stop, &diag), &diag);
 }
 
 static void step_limit(call *c)
@@ -682,14 +705,27 @@ static void impulse(call *c)
     c->plhs[0] = out;
 }
 
+static mxArray *errors_in_space(const nekton_resolution *r)
+{
+    static const char *names[] = {"mass", "force", "quadrature", "bound"};
+    double v[] = {r->mass, r->force, r->quadrature, r->bound};
+    return record(names, v, COUNT(names));
+}
+
 static void resolution(call *c)
 {
     nekton_resolution r;
     nekton_diag diag;
     check(nekton_sim_resolution(get(c->prhs[0])->sim, &r, &diag), &diag, "sim");
-    static const char *names[] = {"mass", "force"};
-    double v[] = {r.mass, r.force};
-    c->plhs[0] = record(names, v, COUNT(names));
+    c->plhs[0] = errors_in_space(&r);
+}
+
+static void indicators(call *c)
+{
+    nekton_resolution r;
+    nekton_diag diag;
+    check(nekton_sim_indicators(get(c->prhs[0])->sim, &r, &diag), &diag, "sim");
+    c->plhs[0] = errors_in_space(&r);
 }
 
 /* The distance, and the two places as rows (kind, index, link), counted from 1. */
@@ -782,6 +818,7 @@ static const struct {
     {"energy", energy, 1, 1, 1},
     {"impulse", impulse, 1, 1, 1},
     {"resolution", resolution, 1, 1, 1},
+    {"indicators", indicators, 1, 1, 1},
     {"gap", gap, 1, 1, 2},
     {"counters", counters, 1, 1, 1},
     {"accelerations", accelerations, 1, 1, 1},

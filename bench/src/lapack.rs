@@ -29,6 +29,8 @@ impl Lapack {
         // SAFETY: OpenBLAS's initialization asks the processor and allocates; the types are those of LAPACK's
         // Fortran interface with 32-bit integers and of OpenBLAS's own functions.
         unsafe {
+            // Its threads, once started, would disturb what is timed.
+            std::env::set_var("OPENBLAS_NUM_THREADS", "1");
             let library = NAMES
                 .iter()
                 .find_map(|name| Library::new(name).ok())

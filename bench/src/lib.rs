@@ -1,4 +1,6 @@
 //! How fast nekton is: stages, whole evaluations, and both beside OpenBLAS's factorization.
 
 pub mod lapack;
+pub mod rows;
+pub mod scenes;
 pub mod timing;

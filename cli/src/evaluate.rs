@@ -79,7 +79,7 @@ impl Values {
                 ("total", e.total),
                 ("work", e.work),
             ],
-            resolution: vec![("mass", r.mass), ("force", r.force)],
+            resolution: vec![("mass", r.mass), ("force", r.force), ("quadrature", r.quadrature), ("bound", r.bound())],
         })
     }
 

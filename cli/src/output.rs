@@ -15,14 +15,16 @@ const NAMES: &[&str] = &[
     "trajectory.csv",
     "energy.csv",
     "torque.csv",
+    "resolution.csv",
     "trajectories.svg",
     "energy.svg",
     "momentum.svg",
     "torque.svg",
+    "resolution.svg",
     "report.html",
 ];
 
-/// The three tables. Numbers have 17 significant digits, so that reading them gives the same bits back.
+/// The four tables. Numbers have 17 significant digits, so that reading them gives the same bits back.
 pub fn tables(record: &Record) -> Vec<File> {
     let mut trajectory = vec!["t".to_owned()];
     for link in &record.links {
@@ -40,10 +42,16 @@ pub fn tables(record: &Record) -> Vec<File> {
         vec![r.t, e.kinetic_fluid, e.kinetic_bodies, e.buoyancy, e.repulsion, e.circulation, e.total, e.work]
     });
     let torques = record.rows.iter().map(|r| std::iter::once(&r.t).chain(r.torque.iter().flatten()).copied().collect());
+    let resolution = ["t", "mass", "force", "quadrature", "bound"];
+    let resolutions = record.rows.iter().map(|r| {
+        let i = &r.resolution;
+        vec![r.t, i.mass, i.force, i.quadrature, i.bound()]
+    });
     vec![
         ("trajectory.csv", table(&trajectory, trajectories)),
         ("energy.csv", table(&energy.map(str::to_owned), energies)),
         ("torque.csv", table(&torque, torques)),
+        ("resolution.csv", table(&resolution.map(str::to_owned), resolutions)),
     ]
 }
 

@@ -10,6 +10,7 @@ use crate::setup::Setup;
 pub fn plan(path: &Path) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
     crate::say(&setup.model.view().plan().to_string());
+    crate::say(&format!("nodes                    {}", setup.nodes().join(", ")));
     for notice in setup.notices() {
         crate::say(&format!("notice: {notice}"));
     }

@@ -69,6 +69,9 @@ pub(crate) fn all(record: &Record) -> Outcome<Vec<(&'static str, String)>> {
         let unit = if record.terms.slider { "hinge: N, slider: N/m" } else { "N" };
         plots.push(("torque.svg", over_time("Joint torques", "torque", unit, &torques(record))?));
     }
+    if record.terms.fluid {
+        plots.push(("resolution.svg", over_time("Error in space", "relative error", "log₁₀", &resolutions(record))?));
+    }
     Ok(plots)
 }
 
@@ -111,6 +114,21 @@ fn momenta(record: &Record) -> Vec<Series> {
 fn torques(record: &Record) -> Vec<Series> {
     let torque = |k: usize| move |r: &Row| r.torque.get(k).map_or(f64::NAN, |t| t[0]);
     record.joints.iter().enumerate().map(|(k, name)| line(record, name, colour(k), torque(k))).collect()
+}
+
+/// Indicators as powers of ten, not below rounding.
+fn resolutions(record: &Record) -> Vec<Series> {
+    let power = |x: f64| x.max(1e-17).log10();
+    let mut series = vec![
+        line(record, "mass", colour(0), |r| power(r.resolution.mass)),
+        line(record, "force", colour(1), |r| power(r.resolution.force)),
+        line(record, "quadrature", colour(2), |r| power(r.resolution.quadrature)),
+        Series { thick: true, ..line(record, "bound", RGBColor(0, 0, 0), |r| power(r.resolution.bound())) },
+    ];
+    if record.tolerance > 0.0 {
+        series.push(line(record, "asked", colour(3), |_| power(record.tolerance)));
+    }
+    series
 }
 
 /// Smallest interval that holds all values, a little enlarged.

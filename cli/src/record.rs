@@ -1,5 +1,7 @@
 //! What a run leaves behind, in the user's order of links.
 
+use nekton::Resolution;
+
 /// Everything the tables, plots and the report are made from.
 #[derive(Debug, Default)]
 pub struct Record {
@@ -19,8 +21,8 @@ pub struct Record {
     pub terms: Terms,
     /// Smallest gap met, when and between what.
     pub smallest: Option<Nearest>,
-    /// Worst error indicators of space met: added mass, force.
-    pub resolution: [f64; 2],
+    /// Relative error in space that the scene asks for; 0: none.
+    pub tolerance: f64,
     /// Why the run stopped before its end.
     pub stopped: Option<String>,
     /// Remarks on the scene.
@@ -74,6 +76,8 @@ pub struct Row {
     pub impulse: [f64; 3],
     /// Smallest gap; infinite if nothing could touch.
     pub gap: f64,
+    /// Error indicators of space, the largest since the row before.
+    pub resolution: Resolution<f64>,
     /// Torque and power per joint.
     pub torque: Vec<[f64; 2]>,
 }

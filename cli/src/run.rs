@@ -14,7 +14,7 @@ use crate::scene_file::{Integrator, Problem, RunDef};
 use crate::setup::Setup;
 use crate::trade;
 use crate::{Ending, say};
-use nekton::{Model, Sim};
+use nekton::{Model, Resolution, Sim};
 
 /// Points with which an outline is drawn.
 const OUTLINE_POINTS: usize = 240;
@@ -66,12 +66,6 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         Integrator::Gauss6 { step } => format!("gauss6, step {step} s"),
         Integrator::Adams { tolerance } => format!("adams, relative and absolute tolerance {tolerance:e}"),
     };
-    let nodes: Vec<String> = setup
-        .links
-        .iter()
-        .zip(&labels)
-        .filter_map(|(core, label)| Some(format!("{label} {}", model.link(*core)?.nodes)))
-        .collect();
     Record {
         joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
         links: labels,
@@ -87,12 +81,13 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         },
         notices: setup.notices(),
         plan: plan.to_string(),
+        tolerance: plan.tolerance,
         settings: vec![
             ("scene file".into(), setup.scene.path().display().to_string()),
             ("duration".into(), format!("{} s", run.duration)),
             ("output interval".into(), format!("{} s", run.output_interval)),
             ("integrator".into(), method),
-            ("nodes".into(), nodes.join(", ")),
+            ("nodes".into(), setup.nodes().join(", ")),
         ],
         ..Record::default()
     }
@@ -112,7 +107,9 @@ fn integrate(
 ) -> Result<Option<(f64, Error)>, Problem> {
     let bar = progress(run.duration);
     let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
-    keep(sim, record, row);
+    keep(record, row);
+    let mut watch = Watch::default();
+    watch.look(setup, sim, record);
     let mut stopped = None;
     // The tolerance keeps a last row that would follow the one before by rounding only from being written.
     let rows = (run.duration / run.output_interval - 1e-9).ceil().max(1.0) as usize;
@@ -125,7 +122,8 @@ fn integrate(
         match step.and_then(|()| sample(setup, sim)) {
             Ok(row) => {
                 show(&bar, run.duration, &row.0);
-                keep(sim, record, row);
+                keep(record, row);
+                watch.look(setup, sim, record);
             }
             Err(e) => {
                 stopped = Some((sim.time(), e));
@@ -137,12 +135,14 @@ fn integrate(
         // The last good state may lie between two output times.
         let later = record.rows.last().is_some_and(|r| sim.time() > r.t);
         if let (true, Ok(row)) = (later, sample(setup, sim)) {
-            keep(sim, record, row);
+            keep(record, row);
+            watch.look(setup, sim, record);
         }
         bar.abandon();
     } else {
         bar.finish_and_clear();
     }
+    watch.end(setup, sim.time(), record);
     Ok(stopped)
 }
 
@@ -196,21 +196,54 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error>
         },
         impulse,
         gap: gap.distance,
+        resolution: sim.indicators()?,
         torque: setup.joints.iter().map(|(core, _)| pick(core)).collect(),
     };
     Ok((row, between))
 }
 
-/// Adds a row. The error in space is largest where boundaries come closest: it is looked at whenever they do.
-fn keep(sim: &mut Sim<'_, f64>, record: &mut Record, (row, between): (Row, String)) {
-    let nearer = record.smallest.as_ref().is_none_or(|s| row.gap < s.distance);
-    if nearer && row.gap.is_finite() {
+/// Adds a row.
+fn keep(record: &mut Record, (row, between): (Row, String)) {
+    if row.gap.is_finite() && record.smallest.as_ref().is_none_or(|s| row.gap < s.distance) {
         record.smallest = Some(Nearest { distance: row.gap, time: row.t, between });
     }
-    if nearer && let Ok(r) = sim.resolution() {
-        record.resolution = [record.resolution[0].max(r.mass), record.resolution[1].max(r.force)];
-    }
     record.rows.push(row);
+}
+
+/// A time during which the error in space exceeds what is asked.
+struct Episode {
+    from: f64,
+    worst: (f64, Error),
+    gap: f64,
+}
+
+/// Follows what a simulation has to say about its error in space: one notice for each episode.
+#[derive(Default)]
+struct Watch {
+    episode: Option<Episode>,
+}
+
+impl Watch {
+    /// After a row.
+    fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
+        let Some((time, notice)) = sim.notice() else { return self.end(setup, sim.time(), record) };
+        let gap = sim.gap().distance;
+        let episode = self.episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
+        if notice.value > episode.worst.1.value {
+            (episode.worst, episode.gap) = ((time, notice), gap);
+        }
+    }
+
+    /// The episode, if there is one, is over.
+    fn end(&mut self, setup: &Setup, to: f64, record: &mut Record) {
+        let Some(Episode { from, worst: (time, notice), gap }) = self.episode.take() else { return };
+        let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
+        let text = setup.scene.describe(&notice);
+        let asked = record.tolerance;
+        record
+            .notices
+            .push(format!("t = {from:.6} to {to:.6} s: {text}, asked {asked:.1e}; worst at t = {time:.6} s{gap}"));
+    }
 }
 
 /// Error indicators and counters at the end.
@@ -220,9 +253,16 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
         let between = if s.between.is_empty() { String::new() } else { format!(", between {}", s.between) };
         add("smallest gap at an output time", format!("{:.4} m at t = {:.4} s{between}", s.distance, s.time));
     }
-    let [mass, force] = record.resolution;
-    add("worst relative error in space of the added mass", format!("{mass:.1e}"));
-    add("worst relative error in space of the force", format!("{force:.1e}"));
+    let worst = |part: fn(&Resolution<f64>) -> f64| record.rows.iter().map(|r| part(&r.resolution)).fold(0.0, f64::max);
+    let parts = [worst(|r| r.mass), worst(|r| r.force), worst(|r| r.quadrature)];
+    let bound = format!(
+        "{:.1e} (indicators: mass {:.1e}, force {:.1e}, quadrature {:.1e})",
+        worst(Resolution::bound),
+        parts[0],
+        parts[1],
+        parts[2]
+    );
+    add("bound of the relative error in space", bound);
     let c = sim.counters();
     add("steps (rejected)", format!("{} ({})", c.steps, c.rejected));
     add("evaluations", c.evaluations.to_string());

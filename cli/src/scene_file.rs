@@ -8,7 +8,7 @@ mod table;
 
 use std::path::Path;
 
-use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Repulsion, Scene, Wall};
+use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Quadrature, Repulsion, Scene, Wall};
 use nekton::status::{Error, Place, Status};
 
 pub use body::{BodyDef, LinkDef};
@@ -32,6 +32,8 @@ pub struct SceneFile {
     /// Bodies.
     pub bodies: Vec<BodyDef>,
     force: ForceFormula,
+    quadrature: Quadrature,
+    tolerance: Option<f64>,
     shortcuts: bool,
     run: Option<RunDef>,
     lines: Lines,
@@ -94,7 +96,7 @@ const MOST_ROWS: f64 = 1e6;
 const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 const TOP: &[&str] = &["fluid", "repulsion", "circulation", "tank", "obstacle", "body", "run"];
-const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "shortcuts"];
+const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "quadrature", "tolerance", "shortcuts"];
 
 impl SceneFile {
     /// Reads and checks a scene file.
@@ -141,7 +143,8 @@ impl SceneFile {
             obstacles: &obstacles,
             bodies: &bodies,
             force: self.force,
-            quadrature: nekton::scene::Quadrature::default(),
+            quadrature: self.quadrature,
+            tolerance: self.tolerance,
             shortcuts: self.shortcuts,
         })
     }
@@ -339,11 +342,17 @@ fn read(source: &Source) -> Outcome<SceneFile> {
     }
     let run = top.get("run").map(|r| r.section("[run]", RUN)).transpose()?;
     let mut force = ForceFormula::ExactGradient;
+    let mut quadrature = Quadrature::Graded;
+    let mut tolerance = None;
     let mut shortcuts = true;
     if let Some(section) = &run {
         if section.or("force", "exact", |m| m.word(&["exact", "boundary"]))? == "boundary" {
             force = ForceFormula::Boundary;
         }
+        if section.or("quadrature", "graded", |m| m.word(&["graded", "plain"]))? == "plain" {
+            quadrature = Quadrature::Plain;
+        }
+        tolerance = section.get("tolerance").map(|t| t.positive()).transpose()?;
         shortcuts = section.or("shortcuts", true, Item::flag)?;
     }
     Ok(SceneFile {
@@ -356,6 +365,8 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         obstacles,
         bodies,
         force,
+        quadrature,
+        tolerance,
         shortcuts,
         run: run.as_ref().map(read_run).transpose()?,
         lines: top.lines(&["body", "obstacle", "tank"]),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nekton::status::{Error, Place};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
-use crate::trade::{Choice, Variant, method};
+use crate::trade::{Choice, Variant, counts, method, unit};
 use nekton::{ModelBuf, SimBuf};
 
 /// A scene with its model.
@@ -25,7 +25,7 @@ impl Setup {
     /// Reads and compiles a scene.
     pub fn open(path: &Path) -> Result<Self, Problem> {
         let scene = SceneFile::open(path)?;
-        let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
+        let model = scene.with_core(|core| ModelBuf::resolved(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
         let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();
@@ -43,21 +43,39 @@ impl Setup {
     /// Compiles the scene anew with another setting.
     pub fn remake(&mut self, choice: &Choice) -> Result<(), Problem> {
         let Choice { setting, scale, .. } = choice;
-        let model = self.scene.with_core(|base| {
-            ModelBuf::new(&Variant { base, scale: *scale, force: setting.force, quadrature: setting.quadrature })
-        });
+        let counts = counts(&self.model.view());
+        let (force, quadrature) = (setting.force, setting.quadrature);
+        let model = self
+            .scene
+            .with_core(|base| ModelBuf::new(&Variant { base, counts: &counts, scale: *scale, force, quadrature }));
         self.model = Arc::new(model.map_err(|e| self.problem(&e))?);
         Ok(())
     }
 
     /// Starts a simulation.
     pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
-        SimBuf::new(self.model.clone(), method(integrator)).map_err(|e| self.problem(&e))
+        SimBuf::new(self.model.clone(), method(integrator, self.unit())).map_err(|e| self.problem(&e))
+    }
+
+    /// What the absolute tolerance is a part of.
+    pub fn unit(&self) -> f64 {
+        unit(&self.model.view())
     }
 
     /// An error of the core as a complaint about the scene file.
     pub fn problem(&self, error: &Error) -> Problem {
         self.scene.problem(error)
+    }
+
+    /// Every boundary with its nodes.
+    pub fn nodes(&self) -> Vec<String> {
+        let view = self.model.view();
+        let labels = self.scene.labels();
+        let links = self.links.iter().zip(labels).filter_map(|(core, label)| Some((label, view.link(*core)?.place)));
+        let obstacles = (0..self.scene.obstacles.len()).map(Place::Obstacle);
+        let walls = self.scene.tank.iter().map(|_| Place::Tank).chain(obstacles);
+        let walls = walls.map(|place| (self.scene.name_of(place).trim_start_matches("the ").to_owned(), place));
+        links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
     }
 
     /// What set-up mended.

@@ -34,7 +34,7 @@ fn unknown_key() {
     );
     refuses(
         &changed("output_interval", "zzz"),
-        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, shortcuts)",
+        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, tolerance, shortcuts)",
     );
 }
 
@@ -152,6 +152,15 @@ fn values_out_of_range() {
         &changed("nodes = 32", "nodes = 0"),
         "scene.toml:12: `nodes` must be even and at least 8, but is 0 (try 8)",
     );
+    refuses(&changed("nodes = 32", "nodes = \"many\""), "scene.toml:12: `nodes` cannot be `many` (allowed: auto)");
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\ntolerance = 0"),
+        "scene.toml:33: `tolerance` must be greater than 0, but is 0",
+    );
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\ntolerance = nan"),
+        "scene.toml:33: `tolerance` must be finite, but is nan",
+    );
     refuses(
         &changed("nodes = 32", "nodes = 31"),
         "scene.toml:12: `nodes` must be even and at least 8, but is 31 (try 32)",
@@ -163,6 +172,10 @@ fn values_out_of_range() {
     refuses(
         &changed("[1.0, 0.4]", "[1.0, 0.0]"),
         "scene.toml:10: `ellipse` needs two lengths greater than 0, but one is 0",
+    );
+    refuses(
+        &changed("duration = 0.5", "duration = 0.5\nquadrature = \"grated\""),
+        "scene.toml:33: `quadrature` cannot be `grated` (did you mean `graded`?)",
     );
     refuses(&changed("duration = 0.5", "duration = 0"), "scene.toml:32: `duration` must be greater than 0, but is 0");
     refuses(

@@ -25,6 +25,8 @@ fn run_writes_exactly_these_files() {
         "energy.svg",
         "momentum.svg",
         "report.html",
+        "resolution.csv",
+        "resolution.svg",
         "torque.csv",
         "torque.svg",
         "trajectories.svg",
@@ -46,7 +48,9 @@ fn tables_have_the_documented_headers_and_17_digits() {
     assert_eq!(energy.lines().next().unwrap(), header);
     let torque = place.read("results/torque.csv");
     assert_eq!(torque.lines().next().unwrap(), "t,fish.tail.torque,fish.tail.power");
-    for table in [&trajectory, &energy, &torque] {
+    let resolution = place.read("results/resolution.csv");
+    assert_eq!(resolution.lines().next().unwrap(), "t,mass,force,quadrature,bound");
+    for table in [&trajectory, &energy, &torque, &resolution] {
         let times: Vec<f64> = rows(table).iter().map(|r| r[0]).collect();
         assert_eq!(times.len(), 6);
         assert!(times.iter().enumerate().all(|(k, t)| (t - 0.1 * k as f64).abs() < 1e-15), "{times:?}");
@@ -102,7 +106,7 @@ fn report_is_self_contained() {
     for word in ["http:", "https:", "src=", "href=", "@import", "url(", "{{", "}}"] {
         assert!(!stripped.contains(word), "{word}");
     }
-    assert_eq!(report.matches("<svg").count(), 4);
+    assert_eq!(report.matches("<svg").count(), 5);
     for part in ["<canvas", "fish.tail", "boundary unknowns", "evaluations", "Plan", "Settings"] {
         assert!(report.contains(part), "{part}");
     }
@@ -131,6 +135,7 @@ fn plots_name_axes_units_and_lines() {
     has("trajectories.svg", &["x (m)", "y (m)", "fish.head", "fish.tail", "stone.stone"]);
     has("energy.svg", &["time (s)", "J/m", "total", "work of the joints"]);
     has("momentum.svg", &["time (s)", "along x", "angular"]);
+    has("resolution.svg", &["time (s)", "relative error (log₁₀)", "bound"]);
     has("torque.svg", &["time (s)", "torque", "fish.tail"]);
 }
 
@@ -343,4 +348,37 @@ fn every_scene_says_where_it_comes_from_and_compiles() {
         let done = nekton(&folder, &["plan", name]);
         assert_eq!(done.code, Some(0), "{name}: {}", done.err);
     }
+}
+
+#[test]
+fn a_tolerance_in_space_that_is_missed_is_one_notice_on_the_terminal_and_in_the_report() {
+    let scene = changed("nodes = 32", "nodes = 16").replace("duration = 0.5", "duration = 0.5\ntolerance = 1e-10");
+    let place = Place::new(&scene);
+    let done = place.run();
+    assert_eq!(done.code, Some(0), "a notice is no error: {}", done.err);
+    let notices: Vec<&str> = done.out.lines().filter(|l| l.contains("notice")).collect();
+    assert_eq!(notices.len(), 1, "one episode: {}", done.out);
+    for part in ["t = 0.000000 to 0.500000 s", "tolerance asked for in space is not met", "asked 1.0e-10", "gap"] {
+        assert!(notices[0].contains(part), "{part}: {}", notices[0]);
+    }
+    let (_, text) = notices[0].split_once("notice: ").unwrap();
+    assert!(place.read("results/report.html").replace("&quot;", "\"").contains(text));
+    assert!(place.read("results/resolution.svg").contains("asked"));
+    let met = Place::new(&changed("duration = 0.5", "duration = 0.5\ntolerance = 0.5"));
+    assert!(!met.run().out.contains("notice"));
+}
+
+#[test]
+fn automatic_nodes_are_shown_by_the_plan() {
+    let place = Place::new(&changed("nodes = 32", "nodes = \"auto\""));
+    let plan = place.nekton(&["plan", "scene.toml"]);
+    assert_eq!(plan.code, Some(0), "{}", plan.err);
+    let line = |name: &str| plan.out.lines().find(|l| l.starts_with(name)).unwrap_or_default().to_owned();
+    assert_eq!(line("tolerance in space").split_whitespace().last(), Some("1e-8"));
+    let nodes = line("nodes");
+    let counts: Vec<usize> = nodes.split(',').map(|n| n.split_whitespace().last().unwrap().parse().unwrap()).collect();
+    assert_eq!(counts.len(), 3, "{nodes}");
+    assert!(nodes.contains("fish.head") && counts[0].is_multiple_of(2) && counts[0] > 16, "{nodes}");
+    let explicit = Place::new(&changed("", "")).nekton(&["plan", "scene.toml"]).out;
+    assert!(!explicit.contains("tolerance in space") && explicit.contains("fish.head 32"), "{explicit}");
 }

@@ -9,7 +9,7 @@ use crate::scalar::Real;
 use crate::scene::{CirculationModel, Description};
 use crate::status::{Error, Result, Status};
 use crate::validate::validate;
-use crate::workspace::part;
+use crate::workspace::{part, part_mut};
 
 /// Lengths of a model's four arrays.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -94,6 +94,10 @@ impl<'a, R: Real> Model<'a, R> {
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
+        if layout.close_range_len > 0 {
+            let tables = part_mut(store, layout.close_range_at, layout.close_range_len);
+            crate::forces::close_range::fill_tables(tables, scratch)?;
+        }
         if traits.graded && head.plan.walls > 1 {
             let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
             grade_walls(walls, store, scratch)?;
@@ -105,7 +109,7 @@ impl<'a, R: Real> Model<'a, R> {
         if traits.formulation == Formulation::Kirchhoff
             && let Some(boundary) = memory.boundaries.first()
         {
-            (head.lone_added_mass, head.lone_impulse) =
+            (head.lone_added_mass, head.lone_impulse, head.lone_resolution) =
                 crate::lone::constants(boundary, store, scratch, traits.circulation)?;
         }
         Ok(head)
@@ -168,6 +172,7 @@ fn head<R: Real, S: Description<R>>(
         gravity: settings.gravity != R::zero(),
         repulsion: settings.repulsion.is_some_and(|r| r.epsilon != R::zero()),
         circulation: traits.circulation,
+        tolerance: crate::resolve::asked(scene).to_f64(),
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
@@ -178,6 +183,7 @@ fn head<R: Real, S: Description<R>>(
         repulsion: settings.repulsion.filter(|r| r.epsilon != R::zero()),
         gyroscopic: traits.circulation && settings.circulation == CirculationModel::Full,
         force: settings.force,
+        tolerance: crate::resolve::asked(scene),
         wall_nodes: layout.wall_nodes,
         walls_at: layout.walls_at,
         walls_regular_at: layout.walls_regular_at,
@@ -186,10 +192,13 @@ fn head<R: Real, S: Description<R>>(
             nodes: if traits.graded { layout.unknowns } else { 0 },
             rungs: if traits.graded { layout.rungs } else { 0 },
         },
+        close_range_at: layout.close_range_at,
+        close_range_len: layout.close_range_len,
         tracks_work,
         prescribed_moves,
         lone_added_mass: [R::zero(); 9],
         lone_impulse: [R::zero(); 3],
+        lone_resolution: [R::zero(); 2],
         plan,
     };
     head.plan.sim_bytes = crate::sim::SimRequirement::of(&head, coordinates.len())

@@ -19,7 +19,7 @@ pub struct Gap<R> {
 
 /// A gap below this share of the smaller body's size counts as contact.
 fn touching<R: Real>() -> R {
-    R::lit(1e-6).max(R::lit(64.0) * R::EPSILON)
+    R::lit(1e-8).max(R::lit(64.0) * R::EPSILON)
 }
 
 /// Whether the polygon of the nodes encloses `z` (crossing number).
@@ -255,7 +255,7 @@ pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -
     best
 }
 
-/// The first pair that touches or overlaps (within one millionth of the smaller size), if any.
+/// The first pair that touches or overlaps (within 1e-8 of the smaller size), if any.
 pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place, R)> {
     pairs(model, poses).find_map(|(i, j, a, b)| {
         let limit = touching::<R>() * size(&a, &b);

@@ -2,12 +2,13 @@
 //! indicators. The first question after a step costs one evaluation; the following ones share it.
 
 use crate::articulation::{put_three, twist_of};
-use crate::christoffel::{PairScratch, PassResult, pair_pass};
+use crate::christoffel::PairScratch;
 use crate::configuration::{Configuration, Poses};
 pub use crate::contact::Gap;
 use crate::contact::smallest_gap;
 use crate::dynamics::joint_torque;
 use crate::forces::{buoyancy, circulation, repulsion};
+pub use crate::indicators::Resolution;
 use crate::model::{Control, Formulation, Model};
 use crate::near::Near;
 use crate::potentials::{
@@ -18,7 +19,7 @@ use crate::sim::Sim;
 use crate::status::{Error, Result, Status};
 pub use crate::work::Counters;
 use crate::work::{Work, configuration, flow, scratch, system};
-use crate::workspace::{at, axpy, copy, part, put};
+use crate::workspace::{at, copy, part, put};
 
 /// Energies, J/m.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -37,16 +38,6 @@ pub struct Energy<R> {
     pub total: R,
     /// Work done by the drives since the start; total − work is constant.
     pub work: R,
-}
-
-/// Relative error indicators of the space discretization. Within a factor of about 20 of the error in the cases measured;
-/// they do not see an error of the shape itself.
-#[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Resolution<R> {
-    /// Asymmetry of the discrete added mass, relative to its largest entry.
-    pub mass: R,
-    /// Difference of the two forms of the force's first term, relative to the largest force.
-    pub force: R,
 }
 
 impl<R: Real> Work<'_, R> {
@@ -74,7 +65,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// `out = M^f e` per unit density for a world direction `e` of one coordinate; `transposed`: the other half.
-    fn mass_column(&mut self, model: &Model<'_, R>, direction: usize, transposed: bool, out: &mut [R]) {
+    pub(crate) fn mass_column(&mut self, model: &Model<'_, R>, direction: usize, transposed: bool, out: &mut [R]) {
         let c = &configuration!(self, model);
         out.fill(R::zero());
         put(out, direction, R::one());
@@ -98,7 +89,7 @@ impl<R: Real> Work<'_, R> {
 }
 
 impl<R: Real> Sim<'_, R> {
-    fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         3 * self.model.links.len()
     }
 
@@ -375,49 +366,6 @@ impl<R: Real> Sim<'_, R> {
         }
         self.head.fresh = false;
         Ok(())
-    }
-
-    /// Error indicators of the space discretization at the state shown. 6n + 6 solves for n links, two passes over the pairs.
-    ///
-    /// # Errors
-    /// As [`Sim::energy`].
-    pub fn resolution(&mut self) -> Result<Resolution<R>> {
-        self.refresh()?;
-        let model = self.model;
-        let zero = R::zero();
-        if model.head.plan.unknowns == 0 {
-            return Ok(Resolution { mass: zero, force: zero });
-        }
-        let largest = |x: &[R]| x.iter().fold(R::zero(), |m, x| m.max(x.abs()));
-        // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l, both from one more pass.
-        let w = &mut self.work;
-        w.christoffel_force(&model);
-        let scale = largest(w.force);
-        let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
-        let c = &configuration!(w, &model);
-        pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
-        let system = system!(w);
-        system.factors().solve(w.rate);
-        system.factors().solve_transposed(w.transposed);
-        flux_moments(c, w.rate, w.force);
-        add_potential_moments(c, w.transposed, R::TWO, w.force);
-        let difference = largest(w.force) * model.head.fluid_density;
-        let force = if scale > zero { difference / scale } else { zero };
-        // Mass: M_h against its transpose, column by column.
-        let (mut asymmetry, mut size) = (zero, zero);
-        for k in 0..self.rows() {
-            let w = &mut self.work;
-            // Two vectors that `mass_column` does not use, lent to it and given back.
-            let (column, row) = (core::mem::take(&mut w.force), core::mem::take(&mut w.spare));
-            w.mass_column(&model, k, false, column);
-            w.mass_column(&model, k, true, row);
-            size = size.max(largest(column));
-            axpy(row, -R::one(), column);
-            asymmetry = asymmetry.max(largest(row));
-            (w.force, w.spare) = (column, row);
-        }
-        self.head.fresh = false;
-        Ok(Resolution { mass: asymmetry / size, force })
     }
 }
 

@@ -11,6 +11,7 @@ use crate::articulation::{accelerations, project, put_three, twist_of, velocitie
 use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, pair_pass, without_turning};
 use crate::configuration::{Configuration, Poses};
 use crate::forces::{buoyancy, circulation, repulsion};
+use crate::indicators::force_scale;
 use crate::model::{Control, Formulation, Model};
 use crate::near::Near;
 use crate::potentials::{
@@ -91,10 +92,15 @@ impl<R: Real> Work<'_, R> {
         system.factors().solve(self.solution);
         add_interior_potential(c, self.spare, R::one(), self.solution);
         flux_moments(c, self.solution, self.inertial);
-        axpy(self.force, R::HALF, self.inertial);
+        // Twice the difference of the halves, for the indicator.
+        axpy(self.force, -R::HALF, self.inertial);
+        let difference = largest_force(model, self.force) * R::TWO * density;
+        axpy(self.force, R::one(), self.inertial);
         to_world(c, density, self.force);
         if exact {
             add_frame_terms(links, self.qd, self.momentum, self.gradient, self.force);
+            let scale = force_scale(model, self.force, self.momentum, self.qd);
+            put(self.indicators, 1, if scale > R::zero() { difference / scale } else { R::zero() });
         }
     }
 
@@ -164,6 +170,7 @@ impl<R: Real> Work<'_, R> {
         counters: &mut Counters,
     ) -> Result<()> {
         counters.evaluations += 1;
+        self.indicators.fill(R::zero());
         self.place(model, t, p, dp)?;
         self.grade(model)?;
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
@@ -297,6 +304,15 @@ fn add_body_inertia<R: Real>(model: &Model<'_, R>, w: &[R], force: &mut [R]) {
         let (a, f) = (twist_of(w, i), twist_of(force, i));
         put_three(force, i, f.linear + a.linear * l.mass, f.angular + a.angular * l.inertia);
     }
+}
+
+/// The largest of forces and of torques over the reach of their links.
+pub(crate) fn largest_force<R: Real>(model: &Model<'_, R>, force: &[R]) -> R {
+    let reaches = model.boundaries.iter().filter(|b| b.link.is_some()).map(|b| b.reach);
+    force.chunks_exact(3).zip(reaches).fold(R::zero(), |most, (f, reach)| match f {
+        &[x, y, torque] => most.max(x.abs()).max(y.abs()).max(torque.abs() / reach),
+        _ => most,
+    })
 }
 
 /// −G q̇ of a lone body: its circulation impulse turns with it.

@@ -1,9 +1,11 @@
 //! What a scene requires and where everything goes in a model's store: the same lines count and place.
 
 use crate::boundary::{BoundaryRecord, modes_len, potential_scratch};
+use crate::forces::close_range;
 use crate::grading::grading_len;
 use crate::model::Formulation;
 use crate::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
+use crate::resolve::target;
 use crate::scalar::Real;
 use crate::scene::{Description, Drive, Link, Mass, Quadrature, Root, Shape, Signal};
 use crate::se2::Pose;
@@ -23,22 +25,27 @@ pub(crate) struct Item<'a, R> {
 }
 
 pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Item<'a, R>> + Clone {
-    let wall = |place, w: crate::scene::Wall<'a, R>| Item {
+    let settings = scene.settings();
+    let tolerance = target(settings.tolerance);
+    let nodes = move |given: usize, shape: &Shape<'a, R>| {
+        if given == 0 { crate::resolve::nodes(shape, tolerance, settings.quadrature) } else { given }
+    };
+    let wall = move |place, w: crate::scene::Wall<'a, R>| Item {
         place,
         link: None,
         shape: w.shape,
-        nodes: w.nodes,
+        nodes: nodes(w.nodes, &w.shape),
         centre: None,
         circulation: w.circulation,
         pose: Pose::new(w.position[0], w.position[1], w.angle),
     };
     let tank = scene.tank().into_iter().map(move |w| wall(Place::Tank, w));
     let obstacles = (0..scene.obstacle_count()).filter_map(move |i| Some(wall(Place::Obstacle(i), scene.obstacle(i)?)));
-    let links = each_link(scene).enumerate().map(|(i, (b, l, link))| Item {
+    let links = each_link(scene).enumerate().map(move |(i, (b, l, link))| Item {
         place: Place::Link(b, l),
         link: Some(i),
         shape: link.shape,
-        nodes: link.nodes,
+        nodes: nodes(link.nodes, &link.shape),
         centre: Some(match link.mass {
             Mass::Density(_) => [R::zero(); 2],
             Mass::Given { centre_of_mass, .. } => centre_of_mass,
@@ -111,6 +118,8 @@ pub(crate) struct Layout {
     pub(crate) unknowns: usize,
     /// Reals of the rungs of a configuration.
     pub(crate) rungs: usize,
+    pub(crate) close_range_at: usize,
+    pub(crate) close_range_len: usize,
 }
 
 fn sum(a: usize, b: usize) -> Result<usize> {
@@ -208,6 +217,11 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             scratch = scratch.max(crate::lone::scratch_len(layout.unknowns, traits.circulation)?);
         }
     }
+    if traits.graded && traits.repels {
+        layout.close_range_len = close_range::tables_len::<R>();
+        (layout.close_range_at, at) = (at, sum(at, layout.close_range_len)?);
+        scratch = scratch.max(close_range::scratch_len::<R>().ok_or(Status::SizeOverflow)?);
+    }
     layout.signals_at = at;
     for signal in motions(scene) {
         at = sum(at, signal.store_len())?;
@@ -227,6 +241,7 @@ pub(crate) struct Traits {
     pub(crate) graded: bool,
     /// Pole terms are used: also by a lone thin body.
     pub(crate) tables: bool,
+    pub(crate) repels: bool,
 }
 
 impl Traits {
@@ -250,6 +265,6 @@ impl Traits {
         let repels = settings.repulsion.is_some_and(|r| r.epsilon != R::zero());
         let tables = settings.quadrature == Quadrature::Graded && (fluid || repels);
         let graded = tables && wall_count(scene) + links > 1;
-        Traits { fluid, circulation, formulation, graded, tables }
+        Traits { fluid, circulation, formulation, graded, tables, repels }
     }
 }

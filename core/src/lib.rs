@@ -54,6 +54,7 @@ pub mod diagnostics;
 pub(crate) mod dynamics;
 pub(crate) mod forces;
 pub mod grading;
+pub mod indicators;
 pub mod integrate;
 mod layout;
 pub(crate) mod ldl;
@@ -68,6 +69,7 @@ mod nystrom_test;
 pub mod owned;
 pub mod plan;
 pub(crate) mod potentials;
+pub mod resolve;
 pub mod scalar;
 pub mod scene;
 pub mod se2;
@@ -80,7 +82,8 @@ pub(crate) mod work;
 pub(crate) mod workspace;
 
 pub use compile::{ModelMemory, ModelRequirement};
-pub use diagnostics::{Counters, Energy, Gap, Resolution};
+pub use diagnostics::{Counters, Energy, Gap};
+pub use indicators::Resolution;
 pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
 #[cfg(feature = "alloc")]
 pub use owned::{ModelBuf, SimBuf};

@@ -5,7 +5,7 @@ use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
 use crate::lu::{Factors, factor};
 use crate::scalar::{Complex, Real, cln, complex, dot};
 use crate::status::{Result, Status};
-use crate::workspace::{at, put, take};
+use crate::workspace::{at, part_mut, put, take};
 
 /// Reals of scratch for `n` nodes.
 pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {
@@ -16,13 +16,15 @@ pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {
         .ok_or(Status::SizeOverflow.into())
 }
 
-/// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame.
+/// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame;
+/// and two error indicators: asymmetry of the mass before, relative to its largest entry (rotation: over the body's reach),
+/// and error of the constant density.
 pub(crate) fn constants<R: Real>(
     body: &BoundaryRecord<R>,
     store: &[R],
     scratch: &mut [R],
     circulation: bool,
-) -> Result<([R; 9], [R; 3])> {
+) -> Result<([R; 9], [R; 3], [R; 2])> {
     let n = body.nodes;
     let nodes = body.nodes(store);
     let h = nodes.step;
@@ -81,7 +83,15 @@ pub(crate) fn constants<R: Real>(
             }
         }
     }
+    // The constant density solves A 1 = 2; a column that is no longer needed serves.
+    let constant = part_mut(columns, 0, n);
+    constant.fill(R::TWO);
+    Factors { lu, ld: n, pivots }.solve(constant);
+    let quadrature = constant.iter().fold(R::zero(), |m, x| m.max((*x - R::one()).abs()));
     let [a, b, c, d, e, f, g, i, j] = mass;
     let (bd, cg, fi) = ((b + d) * R::HALF, (c + g) * R::HALF, (f + i) * R::HALF);
-    Ok(([a, bd, cg, bd, e, fi, cg, fi, j], impulse))
+    let size = (a.abs().max(e.abs())).max(j.abs() / (body.reach * body.reach));
+    let difference = (b - d).abs().max((c - g).abs() / body.reach).max((f - i).abs() / body.reach);
+    let asymmetry = if size > R::zero() { difference / size } else { R::zero() };
+    Ok(([a, bd, cg, bd, e, fi, cg, fi, j], impulse, [asymmetry, quadrature]))
 }

@@ -116,17 +116,23 @@ pub struct ModelHead<R> {
     pub(crate) repulsion: Option<Repulsion<R>>,
     pub(crate) gyroscopic: bool,
     pub(crate) force: ForceFormula,
+    /// Relative error in space that the scene asks for; 0: none.
+    pub(crate) tolerance: R,
     /// Nodes on walls; they come first.
     pub(crate) wall_nodes: usize,
     pub(crate) walls_at: usize,
     pub(crate) walls_regular_at: usize,
     pub(crate) channels: usize,
     pub(crate) near: NearDims,
+    pub(crate) close_range_at: usize,
+    pub(crate) close_range_len: usize,
     pub(crate) tracks_work: bool,
     pub(crate) prescribed_moves: bool,
     /// Lone body: added mass (without mass) and flux impulse of its circulation, per unit density, body frame.
     pub(crate) lone_added_mass: [R; 9],
     pub(crate) lone_impulse: [R; 3],
+    /// Lone body: asymmetry of its discrete added mass, and error of the constant density.
+    pub(crate) lone_resolution: [R; 2],
     pub(crate) plan: Plan,
 }
 
@@ -190,6 +196,10 @@ impl<'a, R: Real> Model<'a, R> {
             nodes: self.boundaries.get(self.head.plan.walls + i)?.nodes,
         })
     }
+    /// Nodes on a boundary, automatic or given. `None` if there is no such boundary.
+    pub fn nodes(&self, place: Place) -> Option<usize> {
+        self.boundaries.iter().find(|b| b.place == place).map(|b| b.nodes)
+    }
     /// Number of channels (`Signal::Channel`), in the order of the coordinates.
     pub fn channel_count(&self) -> usize {
         self.head.channels
@@ -203,6 +213,10 @@ impl<'a, R: Real> Model<'a, R> {
         let c = self.joints().nth(j)?;
         let l = self.links.get(c.link)?;
         Some(JointInfo { place: Place::Link(l.place.0, l.place.1), prescribed: c.control == Control::Prescribed })
+    }
+    /// Tables of nodes for points close to an outline (empty: plain rule or no repulsion).
+    pub(crate) fn close_range(&self) -> &'a [R] {
+        crate::workspace::part(self.store, self.head.close_range_at, self.head.close_range_len)
     }
     pub(crate) fn joints(&self) -> impl Iterator<Item = &'a CoordinateRecord<R>> + use<'a, R> {
         self.coordinates.iter().filter(|c| c.component == 3)

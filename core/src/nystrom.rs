@@ -7,6 +7,7 @@
 
 use crate::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_term, fill_self_block};
 use crate::configuration::{Configuration, fill_targets, targets};
+use crate::lu::{Machine, Task};
 use crate::model::ModelHead;
 use crate::near::pole;
 use crate::scalar::{Complex, Real, complex};
@@ -72,6 +73,7 @@ pub(crate) fn assemble<R: Real>(
     let (n, walls) = (zx.len(), c.model.head.wall_nodes);
     let store = c.model.store;
     let walls_anew = c.walls_regraded();
+    let machine = Machine::here();
     for (j, source, nodes) in c.each_boundary() {
         let ready_walls = source.link.is_none() && !walls_anew;
         for (i, target, points) in c.each_boundary().filter(|(i, t, _)| *i != j && !(ready_walls && t.link.is_none())) {
@@ -102,7 +104,14 @@ pub(crate) fn assemble<R: Real>(
                 copy(part_mut(entries, ready, ready_len), part(store, from, ready_len));
             }
             for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
-                kernel_column(part(zx, from, len), part(zy, from, len), x, weight, part_mut(entries, from, len));
+                kernel_column(
+                    machine,
+                    part(zx, from, len),
+                    part(zy, from, len),
+                    x,
+                    weight,
+                    part_mut(entries, from, len),
+                );
             }
             if regular.is_empty() {
                 continue;
@@ -115,7 +124,14 @@ pub(crate) fn assemble<R: Real>(
             for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
                 // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
                 let turned = complex(weight.im, -weight.re);
-                kernel_column(part(zx, from, len), part(zy, from, len), x, turned, part_mut(entries, from, len));
+                kernel_column(
+                    machine,
+                    part(zx, from, len),
+                    part(zy, from, len),
+                    x,
+                    turned,
+                    part_mut(entries, from, len),
+                );
             }
         }
         if !source.table(store).is_empty() {
@@ -158,10 +174,26 @@ pub(crate) fn add_pole_velocity<R: Real>(
 
 /// −Im(weight/(g − z)) for a column of targets.
 #[inline]
-fn kernel_column<R: Real>(zx: &[R], zy: &[R], g: Complex<R>, weight: Complex<R>, out: &mut [R]) {
-    for ((a, x), y) in out.iter_mut().zip(zx).zip(zy) {
-        let (dx, dy) = (g.re - *x, g.im - *y);
-        *a = (weight.re * dy - weight.im * dx) / (dx * dx + dy * dy);
+fn kernel_column<R: Real>(machine: Machine, zx: &[R], zy: &[R], g: Complex<R>, weight: Complex<R>, out: &mut [R]) {
+    machine.run(KernelColumn { zx, zy, g, weight, out });
+}
+
+struct KernelColumn<'a, R> {
+    zx: &'a [R],
+    zy: &'a [R],
+    g: Complex<R>,
+    weight: Complex<R>,
+    out: &'a mut [R],
+}
+
+impl<R: Real> Task for KernelColumn<'_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let (g, weight) = (self.g, self.weight);
+        for ((a, x), y) in self.out.iter_mut().zip(self.zx).zip(self.zy) {
+            let (dx, dy) = (g.re - *x, g.im - *y);
+            *a = (weight.re * dy - weight.im * dx) / (dx * dx + dy * dy);
+        }
     }
 }
 
@@ -201,28 +233,65 @@ pub(crate) fn induced_velocity_both<R: Real>(
     out: &mut [R],
 ) {
     let factor = nodes.step * source.sign / R::PI;
-    for (((g, dg), w), out) in nodes.points().zip(nodes.tangents()).zip(w).zip(out) {
-        let weight = dg * factor;
-        let c = weight * *w;
-        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-        let chunks = t.hx.chunks_mut(LANES).zip(t.hy.chunks_mut(LANES));
-        let points = t.zx.chunks(LANES).zip(t.zy.chunks(LANES)).zip(t.fx.chunks(LANES).zip(t.fy.chunks(LANES)));
-        for ((hx, hy), ((zx, zy), (fx, fy))) in chunks.zip(points) {
-            let sums = re.iter_mut().zip(im.iter_mut());
-            let targets = hx.iter_mut().zip(hy).zip(zx.iter().zip(zy)).zip(fx.iter().zip(fy));
-            for ((((hx, hy), (x, y)), (fx, fy)), (re, im)) in targets.zip(sums) {
-                let (dx, dy) = (g.re - *x, g.im - *y);
-                let inverse = R::one() / (dx * dx + dy * dy);
-                let (ex, ey) = (dx * inverse, -dy * inverse);
-                let (sx, sy) = (ex * ex - ey * ey, (ex + ex) * ey);
-                *hx += c.re * sx - c.im * sy;
-                *hy += c.re * sy + c.im * sx;
-                *re += sx * *fx - sy * *fy;
-                *im += sx * *fy + sy * *fx;
+    Machine::here().run(BothVelocities { nodes, factor, w, t, out });
+}
+
+struct BothVelocities<'a, 'b, R> {
+    nodes: &'a Nodes<'a, R>,
+    factor: R,
+    w: &'a [R],
+    t: &'a mut TargetColumns<'b, R>,
+    out: &'a mut [R],
+}
+
+impl<R: Real> Task for BothVelocities<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let t = self.t;
+        for (((g, dg), w), out) in self.nodes.points().zip(self.nodes.tangents()).zip(self.w).zip(self.out) {
+            let weight = dg * self.factor;
+            let c = weight * *w;
+            let mut sums = ([R::zero(); LANES], [R::zero(); LANES]);
+            let (mut hx, mut hy) = (t.hx.chunks_exact_mut(LANES), t.hy.chunks_exact_mut(LANES));
+            let (zx, zy) = (t.zx.chunks_exact(LANES), t.zy.chunks_exact(LANES));
+            let (fx, fy) = (t.fx.chunks_exact(LANES), t.fy.chunks_exact(LANES));
+            let rest = (zx.remainder(), zy.remainder(), fx.remainder(), fy.remainder());
+            for ((hx, hy), ((x, y), (fx, fy))) in hx.by_ref().zip(hy.by_ref()).zip(zx.zip(zy).zip(fx.zip(fy))) {
+                both_lanes(g, c, (x, y), (fx, fy), (hx, hy), &mut sums);
             }
+            let (x, y, fx, fy) = rest;
+            both_lanes(g, c, (x, y), (fx, fy), (hx.into_remainder(), hy.into_remainder()), &mut sums);
+            let pairs = sums.0.iter().zip(&sums.1);
+            let sum = pairs.fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
+            *out += (weight * sum).im;
         }
-        let sum = re.iter().zip(&im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
-        *out += (weight * sum).im;
+    }
+}
+
+/// At most eight targets. Three loops, each of which vectorizes.
+#[inline(always)]
+fn both_lanes<R: Real>(
+    g: Complex<R>,
+    c: Complex<R>,
+    (x, y): (&[R], &[R]),
+    (fx, fy): (&[R], &[R]),
+    (hx, hy): (&mut [R], &mut [R]),
+    (re, im): &mut ([R; LANES], [R; LANES]),
+) {
+    let (mut sx, mut sy) = ([R::zero(); LANES], [R::zero(); LANES]);
+    for (((sx, sy), x), y) in sx.iter_mut().zip(&mut sy).zip(x).zip(y) {
+        let (dx, dy) = (g.re - *x, g.im - *y);
+        let inverse = R::one() / (dx * dx + dy * dy);
+        let (ex, ey) = (dx * inverse, -dy * inverse);
+        (*sx, *sy) = (ex * ex - ey * ey, (ex + ex) * ey);
+    }
+    for (((hx, hy), sx), sy) in hx.iter_mut().zip(hy).zip(&sx).zip(&sy) {
+        *hx += c.re * *sx - c.im * *sy;
+        *hy += c.re * *sy + c.im * *sx;
+    }
+    for (((((re, im), sx), sy), fx), fy) in re.iter_mut().zip(im).zip(&sx).zip(&sy).zip(fx).zip(fy) {
+        *re += *sx * *fx - *sy * *fy;
+        *im += *sx * *fy + *sy * *fx;
     }
 }
 

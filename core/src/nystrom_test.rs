@@ -339,7 +339,7 @@ fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
                         let entries = points.points().zip(points.tangents());
                         let largest =
                             entries.map(|(g, d)| cabs(d) * points.step / cabs(g - z).powi(2)).fold(0.0, f64::max);
-                        assert!(h < 8e-14 * largest + 1e-12, "gap {gap}, row {k}: {h:e} of {largest:e}");
+                        assert!(h < 1.5e-13 * largest + 1e-12, "gap {gap}, row {k}: {h:e} of {largest:e}");
                     }
                 }
             });

@@ -3,6 +3,7 @@
 use crate::boundary::BoundaryRecord;
 use crate::compile::ModelMemory;
 use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
+use crate::resolve::{Finer, automatic, target};
 use crate::scalar::Real;
 use crate::scene::Description;
 use crate::sim::{Method, Sim, SimHead};
@@ -38,6 +39,36 @@ impl<R: Real> ModelBuf<R> {
         };
         let head = Model::init(scene, &mut memory)?;
         Ok(ModelBuf { head, links, coordinates, boundaries, reals })
+    }
+
+    /// Compiles a scene, and compares the error indicators of its start with its tolerance: automatic node counts that do not
+    /// meet it are raised up to four times, and those kept that come nearest. Costs an evaluation for each attempt.
+    ///
+    /// # Errors
+    /// As [`Model::init`].
+    pub fn resolved(scene: &impl Description<R>) -> Result<Self> {
+        let mut best = Arc::new(ModelBuf::new(scene)?);
+        if !automatic(scene) {
+            return Ok(Arc::unwrap_or_clone(best));
+        }
+        let error = |model: &Arc<ModelBuf<R>>| {
+            let sim = SimBuf::new(model.clone(), Method::Rk4 { step: R::one() });
+            // What keeps a simulation from starting is told when one is made.
+            sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound())
+        };
+        let asked = target(scene.settings().tolerance);
+        let mut least = error(&best);
+        for factor in [1.25, 1.5, 2.0, 3.0, 4.0] {
+            if least <= asked {
+                break;
+            }
+            let model = Arc::new(ModelBuf::new(&Finer { scene, factor })?);
+            let error = error(&model);
+            if error < least {
+                (best, least) = (model, error);
+            }
+        }
+        Ok(Arc::unwrap_or_clone(best))
     }
 
     /// The model's view.

@@ -45,6 +45,8 @@ pub struct Plan {
     pub repulsion: bool,
     /// Circulation.
     pub circulation: bool,
+    /// Relative error in space that the scene asks for; 0: none, no node count is automatic.
+    pub tolerance: f64,
     /// Bytes of the model's store of reals.
     pub model_bytes: usize,
     /// Bytes of a simulation's reals (evaluation and integrator).
@@ -94,6 +96,9 @@ impl fmt::Display for Plan {
             yes(self.repulsion),
             yes(self.circulation)
         )?;
+        if self.tolerance > 0.0 {
+            writeln!(f, "tolerance in space       {:e}", self.tolerance)?;
+        }
         writeln!(f, "model memory             {} bytes", self.model_bytes)?;
         writeln!(f, "simulation memory        {} bytes", self.sim_bytes)?;
         write!(f, "operations / evaluation  {:.3e}", self.operations)

@@ -135,9 +135,7 @@ impl<R: Real> BoundarySystem<'_, R> {
             return Err(crate::status::Status::Internal.into());
         };
         let factors = Factors { lu, ld: self.ld, pivots: self.pivots };
-        for column in rest.chunks_exact_mut(self.ld.max(1)).take(columns) {
-            factors.back_substitute(part_mut(column, 0, self.unknowns));
-        }
+        factors.back_substitute(part_mut(rest, 0, columns * self.ld));
         Ok(())
     }
 

@@ -27,6 +27,9 @@ pub struct Scene<'a, R> {
     pub force: ForceFormula,
     /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
     pub quadrature: Quadrature,
+    /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes (`None`:
+    /// [`DEFAULT_TOLERANCE`](crate::resolve::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
+    pub tolerance: Option<R>,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
 }
@@ -129,7 +132,7 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8.
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -164,7 +167,7 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8.
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,
@@ -338,6 +341,7 @@ impl<R: Real> Scene<'_, R> {
             bodies: &[],
             force: ForceFormula::ExactGradient,
             quadrature: Quadrature::Graded,
+            tolerance: None,
             shortcuts: true,
         }
     }

@@ -3,6 +3,7 @@
 
 use crate::configuration::Poses;
 use crate::contact::{first_misplaced, swept_contact};
+use crate::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::scalar::Real;
@@ -35,7 +36,7 @@ pub enum Method<R> {
         /// Absolute tolerance.
         absolute: R,
     },
-    /// Implicit Gauss–Legendre of order 6, fixed step, 10 to 20 evaluations per step: for long runs, since the energy
+    /// Implicit Gauss–Legendre of order 6, fixed step, 20 to 40 evaluations per step: for long runs, since the energy
     /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
     /// `implicit`, which `std` includes.
     Gauss6 {
@@ -116,10 +117,26 @@ pub struct SimHead<R> {
     pub(crate) time_error: TimeError<R>,
     pub(crate) impulse: [R; 3],
     pub(crate) counters: Counters,
+    /// Largest error indicators over the steps of one call, and when the larger one was met.
+    pub(crate) worst: Resolution<R>,
+    pub(crate) worst_time: R,
+    /// What `worst` belongs to.
+    pub(crate) watch: Watch,
     /// The buffers hold an evaluation of the state shown.
     pub(crate) fresh: bool,
     /// A variable-step integrator holds the state shown or a later one.
     pub(crate) started: bool,
+}
+
+/// What the largest indicators of a simulation belong to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Watch {
+    /// No step since the state was set.
+    Nothing,
+    /// A call that is over: the next step starts anew.
+    Past,
+    /// The call that is under way.
+    Present,
 }
 
 impl<R> SimHead<R> {
@@ -303,6 +320,9 @@ impl<'a, R: Real> Sim<'a, R> {
             time_error: TimeError::default(),
             impulse: [R::zero(); 3],
             counters: Counters::default(),
+            worst: Resolution::default(),
+            worst_time: R::zero(),
+            watch: Watch::Nothing,
             fresh: false,
             started: false,
         })
@@ -467,6 +487,7 @@ impl<'a, R: Real> Sim<'a, R> {
             self.show()?;
             return Err(e);
         }
+        self.head.watch = Watch::Nothing;
         self.restart();
         self.head.time_error = TimeError::default();
         Ok(())

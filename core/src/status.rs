@@ -39,11 +39,12 @@ macro_rules! statuses {
 statuses! {
     Ok = 0, "ok";
     OutlineReversed = 1, "the outline runs clockwise and was turned round";
+    Unresolved = 2, "the tolerance asked for in space is not met";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";
     EmptyScene = -4, "the scene has no body";
-    NodeCount = -5, "a node count must be even, at least 8 and at most 65536";
+    NodeCount = -5, "a node count must be even, at least 8 and at most 65536, or 0 for automatic";
     BadShape = -6, "the shape's measures do not describe an outline";
     SelfIntersection = -7, "the outline crosses itself";
     BadParent = -8, "a link's parent must be an earlier link of the same body";

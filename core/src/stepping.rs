@@ -3,9 +3,10 @@
 
 use crate::configuration::Poses;
 use crate::contact::{set_anchor, swept_contact};
+use crate::indicators::Resolution;
 use crate::model::{Formulation, Model};
 use crate::scalar::Real;
-use crate::sim::{Method, Motion, Sim, motion, split_state};
+use crate::sim::{Method, Motion, Sim, Watch, motion, split_state};
 use crate::status::{Error, Result, Status};
 use crate::work::Work;
 use crate::workspace::{copy, put};
@@ -16,6 +17,7 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`, `NoConvergence`; time and state are then as before.
     pub fn step(&mut self) -> Result<()> {
+        self.begin_watch();
         match self.head.method {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 self.fixed_step(step, true)?;
@@ -50,6 +52,7 @@ impl<R: Real> Sim<'_, R> {
         if t_out == self.head.time {
             return Ok(());
         }
+        self.begin_watch();
         let mut left = self.head.step_limit;
         match self.head.method {
             Method::Adams { .. } => {
@@ -101,6 +104,28 @@ impl<R: Real> Sim<'_, R> {
         self.head.step_count = 0;
     }
 
+    /// A call begins: its first step forgets the indicators of the call before.
+    fn begin_watch(&mut self) {
+        if self.head.watch == Watch::Present {
+            self.head.watch = Watch::Past;
+        }
+    }
+
+    /// Keeps the indicators of a step's last evaluation if they are the largest of this call.
+    fn watch(&mut self, t: R) {
+        let model = self.model;
+        let here = self.work.resolution(&model);
+        if self.head.watch != Watch::Present {
+            (self.head.worst, self.head.worst_time) = (Resolution::default(), t);
+            self.head.watch = Watch::Present;
+        }
+        let worst = self.head.worst;
+        if here.bound() > worst.bound() {
+            self.head.worst_time = t;
+        }
+        self.head.worst = worst.max(&here);
+    }
+
     /// One step of a fixed-step method; `regular` steps keep the multistep history.
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
@@ -129,6 +154,7 @@ impl<R: Real> Sim<'_, R> {
             self.show()?;
             return Err(e);
         }
+        self.watch(next);
         self.head.counters.steps += 1;
         self.note_error(regular);
         if regular {
@@ -162,6 +188,7 @@ impl<R: Real> Sim<'_, R> {
         let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
         self.head.adams = adams;
         outcome?;
+        self.watch(adams.time());
         self.note_error(true);
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);

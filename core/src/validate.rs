@@ -28,6 +28,7 @@ pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
             return Err(Error::new(Status::OutOfRange).of("alpha", r.alpha.to_f64()));
         }
     }
+    crate::resolve::check(settings.tolerance)?;
     if scene.body_count() == 0 {
         return Err(Status::EmptyScene.into());
     }

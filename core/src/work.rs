@@ -11,7 +11,7 @@ use crate::potentials::{
 };
 use crate::scalar::{Complex, Real};
 use crate::status::{Error, Result, Status};
-use crate::workspace::{axpy, buffers, copy, inner, part, part_mut, put};
+use crate::workspace::{at, axpy, buffers, copy, inner, part, part_mut, put};
 
 /// Numbers that the buffers' lengths follow from.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +76,7 @@ buffers! {
         force: 3 * d.links,
         outer: 3 * d.links,
         spare: 3 * d.links,
+        indicators: 2,
         matrix: d.ld * (d.unknowns + d.columns),
         pivots: d.unknowns,
         regular: d.circulating * d.circulating,
@@ -250,21 +251,30 @@ impl<R: Real> Work<'_, R> {
     /// Reduced mass matrix N_pᵀ M N_p, factorized.
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+        let mut asymmetry = R::zero();
         for k in 0..n {
             let column = part(self.jacobian, k * rows, rows);
-            for j in 0..=k {
+            // The diagonal first: the asymmetry of the others is measured by it.
+            for j in (0..=k).rev() {
                 let other = part(self.jacobian, j * rows, rows);
-                let fluid = inner(other, part(self.momenta, k * rows, rows))
-                    + inner(column, part(self.momenta, j * rows, rows));
-                let mut sum = fluid * R::HALF;
+                let halves = [
+                    inner(other, part(self.momenta, k * rows, rows)),
+                    inner(column, part(self.momenta, j * rows, rows)),
+                ];
+                let mut sum = (halves[0] + halves[1]) * R::HALF;
                 for (i, l) in model.links.iter().enumerate() {
                     let (a, b) = (twist_of(column, i), twist_of(other, i));
                     sum += l.mass * crate::scalar::dot(a.linear, b.linear) + l.inertia * a.angular * b.angular;
                 }
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
+                let scale = at(self.reduced, k * n + k).sqrt() * at(self.reduced, j * n + j).sqrt();
+                if scale > R::zero() {
+                    asymmetry = asymmetry.max((halves[0] - halves[1]).abs() / scale);
+                }
             }
         }
+        put(self.indicators, 0, asymmetry.max(model.head.lone_resolution[0]));
         ldl::factor(part_mut(self.reduced, 0, n * n), n, self.reduced_pivots)
     }
 

@@ -46,7 +46,7 @@ pub unsafe extern "C" fn nekton32_link_def_init(def: *mut LinkDef<f32>) -> nekto
 
 /// Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
 /// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
-/// BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+/// BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_model_req(
     def: *const SceneDef<f32>,
@@ -137,6 +137,18 @@ pub unsafe extern "C" fn nekton32_model_notice(
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
     unsafe { report(null_mut(), model::notice(model, notice, place, status)) }
+}
+
+/// Nodes on a boundary, given or automatic.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (no such place). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_model_nodes(
+    model: *const ModelHandle<f32>,
+    place: *const nekton_place,
+    nodes: *mut usize,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), model::nodes(model, place, nodes)) }
 }
 
 /// Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of
@@ -291,17 +303,19 @@ pub unsafe extern "C" fn nekton32_sim_restart(sim: *mut SimHandle<f32>) -> nekto
     unsafe { report(null_mut(), sim::restart(sim)) }
 }
 
-/// One step of the method (ADAMS: one step of its own choice).
+/// One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
+/// a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
 /// simulation is then as it was, bit for bit. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_step(sim: *mut SimHandle<f32>, diag: *mut nekton_diag) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::step(sim)) }
+    unsafe { report_notice(diag, sim::step(sim)) }
 }
 
 /// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
-/// the step function of a controller: set channels, advance by a sample time, read the state.
+/// the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton32_sim_step,
+/// with the largest bound met.
 /// Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
 /// nekton32_sim_set_step_limit). The simulation is then
 /// as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
@@ -312,7 +326,7 @@ pub unsafe extern "C" fn nekton32_sim_advance(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::advance(sim, t_end, t_end)) }
+    unsafe { report_notice(diag, sim::advance(sim, t_end, t_end)) }
 }
 
 /// Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
@@ -326,7 +340,7 @@ pub unsafe extern "C" fn nekton32_sim_advance_dense(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::advance(sim, t_out, t_stop)) }
+    unsafe { report_notice(diag, sim::advance(sim, t_out, t_stop)) }
 }
 
 /// How many steps one call of nekton32_sim_advance or nekton32_sim_advance_dense may make (at first 1000000) before it
@@ -555,7 +569,21 @@ pub unsafe extern "C" fn nekton32_sim_impulse(
     unsafe { report(diag, sim::impulse(sim, impulse.cast())) }
 }
 
-/// Error indicators of the space discretization at the state shown. 12 links + 2 solves.
+/// Error indicators of the steps: the largest over the last call that stepped; before the first step those of the state
+/// shown. They come with every step at the cost of one solve; see nekton_scene_def.tolerance.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED; before the first step CONTACT, SINGULAR, NON_FINITE_STATE. One thread per
+/// simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_indicators(
+    sim: *mut SimHandle<f32>,
+    indicators: *mut ResolutionOut<f32>,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::resolution(sim, indicators, |s| s.indicators())) }
+}
+
+/// Error indicators of the space discretization at the state shown, from all of the added mass. 6 links + 7 solves.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_resolution(
@@ -564,7 +592,7 @@ pub unsafe extern "C" fn nekton32_sim_resolution(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::resolution(sim, resolution)) }
+    unsafe { report(diag, sim::resolution(sim, resolution, |s| s.resolution())) }
 }
 
 /// The smallest gap between boundaries of which one moves. No evaluation.

@@ -36,6 +36,7 @@ impl<'a, R: Real> Checked<'a, R> {
             ("gravity", def.gravity),
             ("repulsion_epsilon", def.repulsion_epsilon),
             ("repulsion_alpha", def.repulsion_alpha),
+            ("tolerance", def.tolerance),
         ] {
             finite(what, x)?;
         }

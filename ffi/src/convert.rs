@@ -3,8 +3,8 @@
 use crate::diag::{Fault, Outcome};
 use crate::types::*;
 use nekton::scene::{
-    Body, CirculationModel, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape,
-    Signal, Wall, Window,
+    Body, CirculationModel, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Repulsion, Root,
+    Scene, Shape, Signal, Wall, Window,
 };
 use nekton::{Method, Real, Status};
 
@@ -163,6 +163,12 @@ pub(crate) fn settings<R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'_, R>> {
             NEKTON_FORCE_BOUNDARY => ForceFormula::Boundary,
             kind => return unknown("force", kind),
         },
+        quadrature: match s.quadrature {
+            NEKTON_QUADRATURE_GRADED => Quadrature::Graded,
+            NEKTON_QUADRATURE_PLAIN => Quadrature::Plain,
+            kind => return unknown("quadrature", kind),
+        },
+        tolerance: if s.tolerance == R::zero() { None } else { Some(s.tolerance) },
         shortcuts: flag("shortcuts", s.shortcuts)?,
         ..Scene::new(s.fluid_density, s.gravity)
     })

@@ -118,11 +118,11 @@ pub(crate) unsafe fn report(diag: *mut nekton_diag, outcome: Outcome<Status>) ->
     unsafe { note(diag, diag_of) }
 }
 
-/// The same for a call that may end with a notice about a place.
-pub(crate) unsafe fn report_notice(diag: *mut nekton_diag, outcome: Outcome<Option<(Place, Status)>>) -> nekton_status {
+/// The same for a call that may end with a notice.
+pub(crate) unsafe fn report_notice(diag: *mut nekton_diag, outcome: Outcome<Option<Fault>>) -> nekton_status {
     let diag_of = match &outcome {
         Ok(None) => nekton_diag::ok(),
-        Ok(Some((place, status))) => nekton_diag { status: status.code(), place: (*place).into(), ..nekton_diag::ok() },
+        Ok(Some(notice)) => nekton_diag::of(notice),
         Err(fault) => nekton_diag::of(fault),
     };
     // SAFETY: as above.

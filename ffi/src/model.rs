@@ -6,7 +6,7 @@ use crate::diag::{Fault, Outcome, place_of};
 use crate::memory::{begin_model, check_memory, model, model_req};
 use crate::shared::NEKTON_ABI_VERSION;
 use crate::types::*;
-use nekton::{Formulation, Model, Place, Real, Status};
+use nekton::{Formulation, Model, Real, Status};
 
 /// Writes a result through a pointer that was checked before anything was computed.
 pub(crate) unsafe fn give<T>(to: *mut T, value: T) -> Outcome<Status> {
@@ -62,6 +62,8 @@ pub(crate) unsafe fn init_scene<R: Real>(def: *mut SceneDef<R>, size: usize, ver
         repulsion_alpha: R::lit(4.0),
         circulation: NEKTON_CIRCULATION_FULL,
         force: NEKTON_FORCE_EXACT_GRADIENT,
+        quadrature: NEKTON_QUADRATURE_GRADED,
+        tolerance: R::zero(),
         shortcuts: 1,
         tank: core::ptr::null(),
         obstacles: core::ptr::null(),
@@ -142,7 +144,7 @@ pub(crate) unsafe fn init<R: Real>(
     def: *const SceneDef<R>,
     out: *mut *mut ModelHandle<R>,
     owned: bool,
-) -> Outcome<Option<(Place, Status)>> {
+) -> Outcome<Option<Fault>> {
     check_pointer("model", out.cast_const())?;
     // SAFETY: the caller's promise about the definition; the memory is checked before it is written.
     unsafe {
@@ -154,7 +156,7 @@ pub(crate) unsafe fn init<R: Real>(
         let handle = parts.finish(head, owned)?;
         give(out, handle)?;
         let notice = model(handle.cast_const())?.notices().next();
-        Ok(notice)
+        Ok(notice.map(|(place, status)| Fault::from(status).at(place)))
     }
 }
 
@@ -189,10 +191,7 @@ pub(crate) unsafe fn on_heap<T>(req: &nekton_req, make: impl FnOnce(*mut u8) -> 
 }
 
 #[cfg(feature = "std")]
-pub(crate) unsafe fn create<R: Real>(
-    def: *const SceneDef<R>,
-    out: *mut *mut ModelHandle<R>,
-) -> Outcome<Option<(Place, Status)>> {
+pub(crate) unsafe fn create<R: Real>(def: *const SceneDef<R>, out: *mut *mut ModelHandle<R>) -> Outcome<Option<Fault>> {
     let mut need = nekton_req::default();
     // SAFETY: the caller's promise about the definition.
     unsafe {
@@ -229,10 +228,7 @@ pub(crate) unsafe fn free_sim<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Sta
 }
 
 #[cfg(not(feature = "std"))]
-pub(crate) unsafe fn create<R: Real>(
-    _: *const SceneDef<R>,
-    _: *mut *mut ModelHandle<R>,
-) -> Outcome<Option<(Place, Status)>> {
+pub(crate) unsafe fn create<R: Real>(_: *const SceneDef<R>, _: *mut *mut ModelHandle<R>) -> Outcome<Option<Fault>> {
     Err(Status::Unsupported.into())
 }
 
@@ -273,6 +269,7 @@ pub(crate) unsafe fn plan<R: Real>(handle: *const ModelHandle<R>, out: *mut nekt
         unknowns: p.unknowns,
         moving_unknowns: p.moving_unknowns,
         right_hand_sides: p.right_hand_sides,
+        tolerance: p.tolerance,
         // SAFETY: checked in `model`.
         model_bytes: unsafe { crate::memory::model_bytes(handle) }?,
         sim_bytes: crate::memory::sim_req(&model)?.size,
@@ -329,6 +326,21 @@ pub(crate) unsafe fn notice<R: Real>(
     unsafe {
         give(place, notice.0.into())?;
         give(status, notice.1.code())
+    }
+}
+
+pub(crate) unsafe fn nodes<R: Real>(
+    handle: *const ModelHandle<R>,
+    place: *const nekton_place,
+    out: *mut usize,
+) -> Outcome<Status> {
+    check_pointer("place", place)?;
+    check_pointer("nodes", out.cast_const())?;
+    // SAFETY: checked above and in `model`.
+    unsafe {
+        let place = *place;
+        let nodes = place_of(&place).zip(Some(model(handle)?)).and_then(|(p, model)| model.nodes(p));
+        give(out, nodes.ok_or(Fault::of(Status::OutOfRange, "place", f64::from(place.kind)))?)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::diag::{Fault, Outcome, place_or_none};
 use crate::memory::{SimParts, check_memory, make_sim, model, model_bytes, remembered, sim, sim_req};
 use crate::model::give;
 use crate::types::*;
-use nekton::{Method, Real, Result, Sim, Status};
+use nekton::{Method, Real, Resolution, Result, Sim, Status};
 
 unsafe fn method<R: Real>(def: *const MethodDef<R>) -> Outcome<Method<R>> {
     check_pointer("method", def)?;
@@ -257,18 +257,28 @@ pub(crate) unsafe fn restart<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Stat
     Ok(Status::Ok)
 }
 
-pub(crate) unsafe fn step<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Status> {
+/// Attempts steps; the notice if the tolerance in space was not met.
+unsafe fn steps<R: Real>(
+    handle: *mut SimHandle<R>,
+    call: impl FnOnce(&mut Sim<'_, R>) -> Result<()>,
+) -> Outcome<Option<Fault>> {
     // SAFETY: checked in `sim`.
-    unsafe { sim(handle.cast_const()) }?.attempt(|sim| sim.step())?;
-    Ok(Status::Ok)
+    let mut parts = unsafe { sim(handle.cast_const()) }?;
+    parts.attempt(call)?;
+    let notice = parts.view()?.notice();
+    Ok(notice.map(|(time, error)| Fault { time: time.to_f64(), ..Fault::from(error) }))
 }
 
-pub(crate) unsafe fn advance<R: Real>(handle: *mut SimHandle<R>, t_out: R, t_stop: R) -> Outcome<Status> {
+pub(crate) unsafe fn step<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Option<Fault>> {
+    // SAFETY: as above.
+    unsafe { steps(handle, |sim| sim.step()) }
+}
+
+pub(crate) unsafe fn advance<R: Real>(handle: *mut SimHandle<R>, t_out: R, t_stop: R) -> Outcome<Option<Fault>> {
     finite("t", t_out)?;
     finite("t_stop", t_stop)?;
-    // SAFETY: checked in `sim`.
-    unsafe { sim(handle.cast_const()) }?.attempt(|sim| sim.advance_dense(t_out, t_stop))?;
-    Ok(Status::Ok)
+    // SAFETY: as above.
+    unsafe { steps(handle, |sim| sim.advance_dense(t_out, t_stop)) }
 }
 
 pub(crate) unsafe fn set_step_limit<R: Real>(handle: *mut SimHandle<R>, steps: u64) -> Outcome<Status> {
@@ -378,13 +388,17 @@ pub(crate) unsafe fn impulse<R: Real>(handle: *mut SimHandle<R>, out: *mut [R; 3
     }
 }
 
-pub(crate) unsafe fn resolution<R: Real>(handle: *mut SimHandle<R>, out: *mut ResolutionOut<R>) -> Outcome<Status> {
+pub(crate) unsafe fn resolution<R: Real>(
+    handle: *mut SimHandle<R>,
+    out: *mut ResolutionOut<R>,
+    question: impl FnOnce(&mut Sim<'_, R>) -> Result<Resolution<R>>,
+) -> Outcome<Status> {
     check_pointer("resolution", out.cast_const())?;
     // SAFETY: checked above and in `sim`.
     unsafe {
-        let r = sim(handle.cast_const())?.view()?.resolution()?;
-        sound([r.mass, r.force])?;
-        give(out, ResolutionOut { mass: r.mass, force: r.force })
+        let r = question(&mut sim(handle.cast_const())?.view()?)?;
+        sound([r.mass, r.force, r.quadrature])?;
+        give(out, ResolutionOut { mass: r.mass, force: r.force, quadrature: r.quadrature, bound: r.bound() })
     }
 }
 

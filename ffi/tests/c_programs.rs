@@ -203,6 +203,7 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
     check("work", &[energy.work]);
     check("impulse", &sim.impulse().unwrap());
     check("resolution", &[sim.resolution().unwrap().mass]);
+    check("indicators", &[sim.indicators().unwrap().bound()]);
     check("gap", &[sim.gap().distance]);
     check("steps", &[R::count(sim.counters().steps as usize)]);
 }

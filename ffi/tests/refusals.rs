@@ -173,6 +173,7 @@ fn every_pointer_count_and_kind_of_a_scene_is_checked() {
     for (spoil, quantity) in [
         ((|d| d.circulation = 2) as fn(&mut SceneDef<f64>), "circulation"),
         (|d| d.force = -1, "force"),
+        (|d| d.quadrature = 2, "quadrature"),
         (|d| d.shortcuts = 2, "shortcuts"),
     ] {
         with_scene(|def, _, _| {
@@ -486,6 +487,49 @@ fn outlines_that_were_turned_round_are_a_notice() {
         assert_eq!(unsafe { model_notice(model, 1, &mut place, &mut status) }, Status::OutOfRange.code());
         assert_eq!(unsafe { model_free(model) }, 0);
     });
+}
+
+#[test]
+fn tolerances_in_space_that_nothing_meets_are_refused() {
+    for (bad, status) in [(-1.0, Status::BadTolerance), (1e-16, Status::BadTolerance), (f64::NAN, Status::NotFinite)] {
+        with_scene(|def, _, _| {
+            def.tolerance = bad;
+            refused(def.get(), status, SCENE, "tolerance");
+        });
+    }
+}
+
+#[test]
+fn steps_that_exceed_the_tolerance_in_space_return_a_notice() {
+    // Two discs side by side: a mirror image of itself, where asymmetry shows nothing.
+    let mut link = ellipse(1.0, 1.0);
+    link.nodes = 32;
+    let mut bodies = [body(), body()];
+    for (b, x) in [(0, 0.0), (1, 2.2)] {
+        (bodies[b].pose, bodies[b].velocity) = ([x, 0.0, 0.0], [0.0, 0.1, 0.0]);
+        (bodies[b].links, bodies[b].link_count) = (&link, 1);
+    }
+    for (tolerance, expected) in [(0.0, 0), (0.9, 0), (1e-9, Status::Unresolved.code())] {
+        let mut def = scene();
+        (def.bodies, def.body_count, def.tolerance) = (bodies.as_ptr(), 2, tolerance);
+        def.quadrature = NEKTON_QUADRATURE_PLAIN;
+        let (mut model, mut sim, mut diag) = (null_mut(), null_mut(), empty_diag());
+        unsafe {
+            assert_eq!(model_create(&def, &mut model, &mut diag), 0);
+            assert_eq!(plan(model).tolerance, tolerance);
+            assert_eq!(sim_create(model, &adams(), &mut sim, &mut diag), 0);
+            for k in 1..=3 {
+                assert_eq!(sim_advance(sim, 0.1 * f64::from(k), &mut diag), expected);
+            }
+            assert_eq!(sim_step(sim, &mut diag), expected);
+            if expected > 0 {
+                assert_eq!((diag.place.index, diag.other.index, diag.item), (0, 1, -1));
+                assert!(diag.value > 1e-9 && diag.time >= 0.3, "{} {}", diag.value, diag.time);
+                assert_eq!(diag.what[..6].iter().map(|c| *c as u8).collect::<Vec<_>>(), b"error\0");
+            }
+            assert_eq!((sim_free(sim), model_free(model)), (0, 0));
+        }
+    }
 }
 
 #[test]

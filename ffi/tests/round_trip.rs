@@ -226,7 +226,8 @@ macro_rules! round_trip {
                 let mut resolution = std::mem::MaybeUninit::uninit();
                 assert_eq!(unsafe { sim_resolution(c, resolution.as_mut_ptr(), null) }, 0);
                 let (r, resolution) = (rust.resolution().unwrap(), unsafe { resolution.assume_init() });
-                assert_eq!((r.mass, r.force), (resolution.mass, resolution.force));
+                assert_eq!((r.mass, r.force, r.quadrature), (resolution.mass, resolution.force, resolution.quadrature));
+                assert_eq!(r.bound(), resolution.bound);
                 let mut gap = std::mem::MaybeUninit::uninit();
                 assert_eq!(unsafe { sim_gap(c, gap.as_mut_ptr(), null) }, 0);
                 let gap = unsafe { gap.assume_init() };

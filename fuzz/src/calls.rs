@@ -320,8 +320,11 @@ macro_rules! precision {
                         if check_report(sim_impulse(self.sim, impulse.as_mut_ptr(), &mut diag), &diag) {
                             assert!(impulse.iter().all(|x| x.is_finite()));
                         }
-                        if check_report(sim_resolution(self.sim, &mut resolution, &mut diag), &diag) {
-                            assert!(resolution.mass.is_finite() && resolution.force.is_finite());
+                        for question in [sim_resolution, sim_indicators] {
+                            if check_report(question(self.sim, &mut resolution, &mut diag), &diag) {
+                                assert!(resolution.mass.is_finite() && resolution.force.is_finite());
+                                assert!(resolution.quadrature.is_finite() && resolution.bound >= R::default());
+                            }
                         }
                         if check_report(sim_gap(self.sim, &mut gap, &mut diag), &diag) {
                             assert!(!gap.distance.is_nan());
@@ -387,6 +390,10 @@ macro_rules! precision {
                         assert_eq!(model_link(self.model, i, &mut link) >= 0, i < self.plan.links);
                         assert_eq!(model_joint(self.model, i, &mut joint) >= 0, i < self.plan.joints);
                         assert_eq!(model_notice(self.model, i, &mut place, &mut status) >= 0, i < self.plan.notices);
+                        let mut nodes = 0;
+                        if model_nodes(self.model, &wanted, &mut nodes) >= 0 {
+                            assert!(nodes >= 8 && nodes % 2 == 0);
+                        }
                         if model_outline_point(self.model, &wanted, t, (&raw mut point).cast()) >= 0 {
                             assert!(point.iter().all(|x| x.is_finite()), "a point of an outline that is not finite");
                         }
@@ -404,6 +411,7 @@ precision!(double, api64, f64, {
     model_link = nekton_model_link,
     model_joint = nekton_model_joint,
     model_notice = nekton_model_notice,
+    model_nodes = nekton_model_nodes,
     model_outline_point = nekton_model_outline_point,
     model_free = nekton_model_free,
     sim_req = nekton_sim_req,
@@ -435,6 +443,7 @@ precision!(double, api64, f64, {
     sim_gyroscopic = nekton_sim_gyroscopic,
     sim_energy = nekton_sim_energy,
     sim_impulse = nekton_sim_impulse,
+    sim_indicators = nekton_sim_indicators,
     sim_resolution = nekton_sim_resolution,
     sim_gap = nekton_sim_gap,
     sim_counters = nekton_sim_counters,
@@ -446,6 +455,7 @@ precision!(single, api32, f32, {
     model_link = nekton32_model_link,
     model_joint = nekton32_model_joint,
     model_notice = nekton32_model_notice,
+    model_nodes = nekton32_model_nodes,
     model_outline_point = nekton32_model_outline_point,
     model_free = nekton32_model_free,
     sim_req = nekton32_sim_req,
@@ -477,6 +487,7 @@ precision!(single, api32, f32, {
     sim_gyroscopic = nekton32_sim_gyroscopic,
     sim_energy = nekton32_sim_energy,
     sim_impulse = nekton32_sim_impulse,
+    sim_indicators = nekton32_sim_indicators,
     sim_resolution = nekton32_sim_resolution,
     sim_gap = nekton32_sim_gap,
     sim_counters = nekton32_sim_counters,

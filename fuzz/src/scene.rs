@@ -157,6 +157,9 @@ impl<R: Number> Store<R> {
 }
 
 fn nodes(bytes: &mut Bytes<'_>) -> usize {
+    if bytes.chance(2) {
+        return 0;
+    }
     let ordinary = 8 + 2 * bytes.below(4);
     bytes.count(ordinary)
 }
@@ -197,6 +200,8 @@ impl<R: Number> Definition<R> {
             repulsion_alpha: R::of(bytes.real(4.0)),
             circulation: bytes.kind(2),
             force: if bytes.below(4) == 0 { bytes.kind(2) } else { NEKTON_FORCE_EXACT_GRADIENT },
+            quadrature: bytes.kind(2),
+            tolerance: R::of(if bytes.below(4) > 0 { 0.0 } else { bytes.real(1e-3) }),
             shortcuts: bytes.kind(2),
             tank: if tank.is_empty() { core::ptr::null() } else { pointer(bytes, &tank) },
             obstacles: pointer(bytes, &obstacles),

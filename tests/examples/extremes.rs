@@ -1,6 +1,7 @@
 //! Writes the tables of the extremes to the folder given: `cargo run --release -p nekton-tests --example extremes docs/accuracy`.
 
 use nekton_tests::extremes::*;
+use nekton_tests::long_run::{drift_table, step_table};
 
 type Table = (&'static str, &'static str, Vec<f64>, fn(f64) -> Case);
 
@@ -13,14 +14,16 @@ fn main() -> std::io::Result<()> {
     let folder = std::path::PathBuf::from(arguments.next().unwrap_or_else(|| ".".into()));
     let only = arguments.next();
     let ratios = powers(-6, 6).into_iter().chain([f64::INFINITY]).collect();
-    let tables: [Table; 8] = [
+    let tables: [Table; 10] = [
+        ("gap", "gap_in_sizes", (1..=7).map(|k| 10f64.powi(-k)).collect(), gap),
+        ("aspect", "aspect_ratio", vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0], aspect),
         ("density", "density_ratio", ratios, density),
         ("length_same_durations", "length_m", powers(-6, 6), |l| scale(l, 1.0)),
         ("length_same_speeds", "length_m", powers(-6, 6), |l| scale(l, l)),
-        ("bodies", "bodies", [1, 2, 3, 5, 8, 12, 20, 30, 50].map(f64::from).to_vec(), |n| bodies(n as usize)),
+        ("bodies", "bodies", [1, 2, 5, 10, 20, 50].map(f64::from).to_vec(), |n| bodies(n as usize)),
         ("tank", "gap_in_radii", vec![3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4], tank),
         ("circulation", "circulation_by_speed_and_size", powers(-2, 6), circulation),
-        ("spin", "spin_by_translation", powers(0, 6), spin),
+        ("spin", "spin_by_translation", powers(1, 6), spin),
         ("repulsion", "exponent", (1..=12).map(f64::from).collect(), repulsion),
     ];
     for (name, parameter, values, case) in tables {
@@ -31,6 +34,23 @@ fn main() -> std::io::Result<()> {
         let text = csv(parameter, &rows);
         println!("{name}\n{text}");
         std::fs::write(folder.join(format!("extremes_{name}.csv")), text)?;
+    }
+    let wanted = |name: &str| only.as_deref().is_none_or(|o| o == name);
+    if wanted("steps") {
+        let mut text = String::new();
+        step_table(&mut text, 10_000);
+        println!("steps\n{text}");
+        std::fs::write(folder.join("extremes_steps.csv"), text)?;
+    }
+    if wanted("long_run") {
+        let mut text = String::new();
+        let path = folder.join("extremes_long_run.csv");
+        drift_table(&mut text, &mut |text| {
+            if let Err(error) = std::fs::write(&path, text) {
+                eprintln!("{}: {error}", path.display());
+            }
+        });
+        println!("long_run\n{text}");
     }
     Ok(())
 }

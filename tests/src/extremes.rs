@@ -65,6 +65,8 @@ pub struct Outcome {
 
 /// Samples of energy and indicators in a run.
 const SAMPLES: u32 = 10;
+/// Steps from one sample to the next: where space is not resolved, a tight tolerance would take any number.
+const STEPS: u64 = 1000;
 
 impl Case {
     /// The same with every length multiplied by `length` and every duration by `time`. Gravity, circulation and repulsion
@@ -141,6 +143,7 @@ impl Case {
 
     fn follow<R: Real>(&self, sim: &mut Sim<'_, R>, out: &mut Outcome) -> Result<(), Error> {
         let (mut first, mut drift, mut size) = (None, 0.0_f64, 0.0_f64);
+        sim.set_step_limit(STEPS)?;
         for k in 0..=SAMPLES {
             sim.advance(R::lit(self.duration * f64::from(k) / f64::from(SAMPLES)))?;
             let e = sim.energy()?;
@@ -280,7 +283,7 @@ pub fn bodies(n: usize) -> Case {
             velocity: [0.3 * phase.cos(), 0.3 * phase.sin(), 0.5 * (2.0 * phase).cos()],
         }
     };
-    Case { bodies: (0..n).map(one).collect(), nodes: 24, duration: 0.5, ..two(1.0, 1.0) }
+    Case { bodies: (0..n).map(one).collect(), nodes: 20, duration: 0.2, ..two(1.0, 1.0) }
 }
 
 /// A disc of radius 1 in a disc tank whose radius is larger by `gap`, off its centre.
@@ -293,6 +296,27 @@ pub fn tank(gap: f64) -> Case {
         velocity: [0.1 * gap, -0.2 * gap, 0.5],
     };
     Case { bodies: vec![disc], tank: Some([1.0 + gap, 1.0 + gap]), ..two(1.0, 1.0) }
+}
+
+/// Two ellipses flank to flank, `gap` apart, that slide past each other and approach a little.
+pub fn gap(gap: f64) -> Case {
+    let mut case = two(1.0, 1.25);
+    for (b, side) in case.bodies.iter_mut().zip([-1.0, 1.0]) {
+        b.pose = [0.0, side * 0.5 * (1.0 + gap), 0.0];
+        b.velocity = [0.05 * side, -0.05 * gap * side, 0.0];
+    }
+    Case { nodes: 96, ..case }
+}
+
+/// Two ellipses of half-axes 1 and 1/`ratio`, side by side at a distance of 0.5.
+pub fn aspect(ratio: f64) -> Case {
+    let mut case = two(1.0, 1.25);
+    for (b, side) in case.bodies.iter_mut().zip([-1.0, 1.0]) {
+        b.axes = [1.0, 1.0 / ratio];
+        b.pose = [0.2 * side, side * (0.25 + 1.0 / ratio), 0.1 * side];
+        b.velocity = [0.2 * side, -0.05 * side, 0.1];
+    }
+    Case { nodes: 96, ..case }
 }
 
 /// Two ellipses with circulations ±γ, in units of speed times size; the run ends earlier when they turn faster.
@@ -320,6 +344,8 @@ pub fn repulsion(alpha: f64) -> Case {
     for (b, side) in case.bodies.iter_mut().zip([-1.0, 1.0]) {
         (b.axes, b.pose, b.velocity) = ([0.5, 0.5], [0.9 * side, -0.05 * side, 0.0], [-0.5 * side, 0.0, 0.3]);
     }
-    (case.repulsion, case.duration, case.nodes) = (Some([alpha, 0.01]), 3.0, 96);
+    // Strong enough to turn them before they touch.
+    let epsilon = 0.3 * 0.5_f64.powf(alpha);
+    (case.repulsion, case.duration, case.nodes) = (Some([alpha, epsilon]), 3.0, 96);
     case
 }

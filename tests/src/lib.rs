@@ -6,7 +6,10 @@ use nekton::status::{Error, Result};
 use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::sync::Arc;
 
+pub mod near;
+
 pub mod extremes;
+pub mod long_run;
 
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]

@@ -87,8 +87,19 @@ fn repulsion_constants() {
 }
 
 #[test]
+fn tolerances_in_space() {
+    let links = [LINK];
+    let bodies = bodies(&links);
+    for bad in [0.0, -1e-6, 1e-16, f64::NAN, f64::INFINITY] {
+        let scene = Scene { tolerance: Some(bad), bodies: &bodies, ..FLUID };
+        refused(&scene, Status::BadTolerance, Place::Scene);
+        assert_eq!(refusal(&scene).what, "tolerance");
+    }
+}
+
+#[test]
 fn node_counts() {
-    for nodes in [0, 6, 33] {
+    for nodes in [2, 6, 33] {
         refused_link(Link { nodes, ..LINK }, Status::NodeCount);
         let links = [LINK];
         let bodies = bodies(&links);

@@ -2,6 +2,7 @@
 
 mod archive;
 mod bare;
+mod bench;
 mod c;
 mod dist;
 mod expected;
@@ -12,6 +13,7 @@ mod steps;
 mod test;
 mod trade;
 
+use crate::steps::{cargo, root};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask <command>
@@ -20,6 +22,11 @@ commands:
   test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
+  bench      docs/bench/ratios.csv: speed beside OpenBLAS's factorization
+  bench-guard
+             fails when one of those ratios is too large
+  bench-counts
+             docs/bench/instructions.csv: instructions per evaluation, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
@@ -29,6 +36,8 @@ commands:
   trade [--quick | --resume]
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
              target/accuracy; --resume: goes on with a run that was cut off)
+  extremes [TABLE]
+             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -37,6 +46,9 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["test"] => test::run(),
+        ["bench"] => bench::run(),
+        ["bench-guard"] => bench::guard(),
+        ["bench-counts"] => bench::write_counts(),
         ["firmware"] => firmware::run(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),
@@ -47,6 +59,8 @@ fn main() -> ExitCode {
         ["trade", "--resume"] => trade::run(true),
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["header"] => header::run(),
+        ["extremes"] => extremes(&[]),
+        ["extremes", table] => extremes(&[table]),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             ExitCode::SUCCESS
@@ -56,4 +70,13 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The complete tables of the extremes.
+fn extremes(table: &[&str]) -> ExitCode {
+    let folder = root().join("docs/accuracy");
+    let mut command =
+        cargo(&["run", "--release", "--quiet", "--package", "nekton-tests", "--example", "extremes", "--"]);
+    let done = command.arg(folder).args(table).status().is_ok_and(|status| status.success());
+    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

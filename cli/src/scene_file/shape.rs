@@ -95,9 +95,12 @@ impl ShapeDef {
     }
 }
 
-/// Reads `nodes = n`: even and at least 8.
+/// Reads `nodes = n`: even and at least 8, or `"auto"`: 0, as the core has it.
 pub fn nodes(item: Option<Item<'_>>, shape: &ShapeDef) -> Outcome<usize> {
     let Some(item) = item else { return Ok(shape.default_nodes()) };
+    if item.is_text() {
+        return item.word(&["auto"]).map(|_| 0);
+    }
     let n = item.count()?;
     if n >= 8 && n.is_multiple_of(2) {
         return Ok(n);

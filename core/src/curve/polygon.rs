@@ -55,11 +55,12 @@ impl<'a, R: Real> Polygon<'a, R> {
         (sigma, self.corners().take_while(|c| c.arclength <= sigma).last().unwrap_or(start))
     }
 
-    /// Distances of σ past a corner and its periodic images, as far as `reach`.
+    /// Distances of σ past a corner and its periodic images, as far as `reach`. The corner's own is y itself, bit for bit: at the
+    /// corner its sign must be that by which the side was chosen.
     fn images(&self, y: R, reach: R) -> impl Iterator<Item = R> + 'a {
         let p = self.perimeter;
-        let first = y - ((reach + y) / p).floor() * p;
-        core::iter::successors(Some(first), move |y| Some(*y + p)).take_while(move |y| *y <= reach).take(256)
+        let turns = core::iter::successors(Some(((reach + y) / p).floor()), |turns| Some(*turns - R::one()));
+        turns.map(move |turns| y - turns * p).take_while(move |y| *y <= reach).take(256)
     }
 
     pub(super) fn jet(&self, t: Complex<R>) -> [Complex<R>; 3] {

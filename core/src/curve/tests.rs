@@ -490,3 +490,22 @@ fn arbitrary_outlines_are_compiled_or_refused_for_a_reason() {
     }
     assert!(accepted > 60 && accepted < 150, "{accepted}");
 }
+
+#[test]
+fn tangent_is_continuous_to_rounding_where_a_side_ends() {
+    // Corners so round that the filter reaches round the whole outline and back to the corner itself.
+    for radius in [0.05, 0.2, 0.3, 0.45] {
+        let shape = compile(Shape::Rectangle { width: 1.0, height: 1.0, radius: Some(radius) });
+        let view = shape.view();
+        for corner in [0.25, 0.5, 0.75, 1.0] {
+            let t = corner * f64::TAU;
+            let [_, before, bend] = view.curve.jet_real(t - 1e-9);
+            for ulps in -8..=8 {
+                let [_, d, _] = view.curve.jet_real(t * (1.0 + f64::from(ulps) * f64::EPSILON));
+                assert!(cabs(d - before) < 3e-9 * cabs(bend) + 1e-13, "radius {radius}, corner {corner}, {ulps} ulps");
+                let [_, d, _] = view.curve.jet(complex(t * (1.0 + f64::from(ulps) * f64::EPSILON), 0.0));
+                assert!(cabs(d - before) < 3e-9 * cabs(bend) + 1e-13, "radius {radius}, corner {corner}, {ulps} ulps");
+            }
+        }
+    }
+}

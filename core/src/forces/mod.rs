@@ -3,4 +3,5 @@
 
 pub(crate) mod buoyancy;
 pub(crate) mod circulation;
+pub(crate) mod close_range;
 pub(crate) mod repulsion;

@@ -5,7 +5,7 @@
 //! - [`adams`]: Adams–Bashforth–Moulton of variable step and order 1–12 (the method of Matlab's
 //!   `ode113`), with error control and dense output, two evaluations.
 //! - [`gauss6`]: the implicit Runge–Kutta method of Gauss and Legendre of order 6, fixed step, symmetric in
-//!   time, about ten to twenty evaluations.
+//!   time, 20 to 40 evaluations.
 //!
 //! Every method sums the state with compensation, so that many short steps do not add up their rounding.
 //!

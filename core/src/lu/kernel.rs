@@ -7,22 +7,35 @@
 //!   arithmetic on such vectors, which is reached through the functions above alone because the types are named nowhere else.
 #![allow(unsafe_code)]
 
-use super::tile::{self, Lanes, Rows};
+use super::Rows;
+use super::portable::Portable;
+#[cfg(target_arch = "x86_64")]
+use super::tile::{self, Lanes};
 use crate::scalar::Real;
-use crate::workspace::inner;
 
 /// The loops that are worth instructions of their own.
 pub(super) trait Kernel<R: Real>: Copy {
-    /// [`tile::subtract`].
+    /// C ← C − A B, where B and C are rows of the same columns `right` and do not overlap. `left` holds A's columns.
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]);
-    /// [`tile::eliminate_block`].
+    /// Elimination with partial pivoting of at most [`super::BLOCK`] columns from row `k` on. Returns the smallest and the
+    /// largest pivot; `None` when there is none.
     fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)>;
-    /// [`tile::solve_triangle`].
+    /// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`super::BLOCK`]).
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
-    /// [`tile::solve_triangle`].
+    /// Solves with the upper triangle there.
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
+    /// Order up to which blocks are eliminated one after the other, without recursion.
+    fn small(self) -> usize {
+        0
+    }
     /// Scalar product.
     fn inner(self, a: &[R], b: &[R]) -> R;
+}
+
+/// A computation that is worth compiling for the machine's own instructions: everything that `run` calls must be inlined.
+pub(crate) trait Task {
+    /// Computes.
+    fn run(self);
 }
 
 /// Vector types of a scalar.
@@ -39,111 +52,28 @@ pub trait Vectors: Sized {
     type Long: Lanes<Self>;
 }
 
-/// Any machine.
-#[derive(Clone, Copy)]
-pub(super) struct Portable;
-
-/// Rows of a vector where the compiler has to find the machine's own: as many as 16 registers hold four columns of.
-#[cfg(target_arch = "arm")]
-const PORTABLE: usize = 2;
-#[cfg(not(target_arch = "arm"))]
-const PORTABLE: usize = 4;
-
-impl<R: Real> Kernel<R> for Portable {
-    fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
-        tile::subtract::<R, [R; PORTABLE], 1>(left, ld, rows, right);
-    }
-    fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)> {
-        tile::eliminate_block::<R, [R; PORTABLE]>(block, ld, n, k, pivots)
-    }
-    fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        tile::solve_triangle::<R, [R; PORTABLE], false>(left, ld, k, right);
-    }
-    fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        tile::solve_triangle::<R, [R; PORTABLE], true>(left, ld, k, right);
-    }
-    fn inner(self, a: &[R], b: &[R]) -> R {
-        inner(a, b)
-    }
-}
-
-impl<R: Real, const W: usize> Lanes<R> for [R; W] {
-    const WIDTH: usize = W;
-    #[inline(always)]
-    fn splat(x: R) -> Self {
-        [x; W]
-    }
-    #[inline(always)]
-    fn load(from: &[R]) -> Option<Self> {
-        from.first_chunk().copied()
-    }
-    #[inline(always)]
-    fn begin(from: &[R]) -> Self {
-        from.first_chunk().copied().unwrap_or_else(|| begin(from))
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [R]) {
-        match to.first_chunk_mut() {
-            Some(to) => *to = self,
-            None => crate::workspace::copy(to, &self),
-        }
-    }
-    #[inline(always)]
-    fn minus_product(mut self, a: Self, b: Self) -> Self {
-        for ((s, a), b) in self.iter_mut().zip(a).zip(b) {
-            *s -= a * b;
-        }
-        self
-    }
-    #[inline(always)]
-    fn max_abs(mut self, x: Self) -> Self {
-        for (s, x) in self.iter_mut().zip(x) {
-            let size = x.abs();
-            if size > *s {
-                *s = size;
-            }
-        }
-        self
-    }
-    #[inline(always)]
-    fn row(self, i: usize) -> R {
-        crate::workspace::at(&self, i)
-    }
-    #[inline(always)]
-    fn largest(self) -> R {
-        self.into_iter().fold(R::zero(), |m, x| if x > m { x } else { m })
-    }
-}
-
-/// The first elements of a slice that is too short, followed by 0.
-#[cold]
-#[inline(never)]
-fn begin<R: Real, const W: usize>(from: &[R]) -> [R; W] {
-    let mut lanes = [R::zero(); W];
-    crate::workspace::copy(&mut lanes, from);
-    lanes
-}
-
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86::Level;
+pub(crate) use x86::Level;
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
+    use crate::workspace::inner;
     use core::arch::x86_64::*;
     use core::mem::transmute;
 
     /// What the machine at hand can do.
-    pub(in super::super) enum Level {
+    #[derive(Clone, Copy)]
+    pub(crate) enum Level {
         Portable(Portable),
         Avx2(Avx2),
         Avx512(Avx512),
     }
 
     impl Level {
-        /// Asks the machine; without `std`, the compiler's options.
+        /// Asks the machine; without `std`, the compiler's options. `--cfg nekton_portable` says that it can do nothing special.
         #[inline]
-        pub(in super::super) fn here() -> Self {
+        pub(crate) fn here() -> Self {
             #[cfg(feature = "std")]
             macro_rules! has {
                 ($f:tt) => {
@@ -156,7 +86,7 @@ mod x86 {
                     cfg!(target_feature = $f)
                 };
             }
-            if !(has!("avx2") && has!("fma")) {
+            if cfg!(nekton_portable) || !(has!("avx2") && has!("fma")) {
                 Level::Portable(Portable)
             } else if has!("avx512f") && has!("avx512vl") && has!("avx512dq") {
                 Level::Avx512(Avx512(()))
@@ -166,13 +96,49 @@ mod x86 {
         }
     }
 
+    #[cfg(test)]
+    impl Level {
+        /// Everything the machine at hand can do, the least first.
+        pub(in super::super) fn all() -> std::vec::Vec<Self> {
+            let mut all = std::vec![Level::Portable(Portable)];
+            match Self::here() {
+                Level::Portable(_) => {}
+                Level::Avx2(kernel) => all.push(Level::Avx2(kernel)),
+                Level::Avx512(kernel) => all.extend([Level::Avx2(Avx2(())), Level::Avx512(kernel)]),
+            }
+            all
+        }
+    }
+
     /// A machine with AVX2 and FMA: 16 registers of 256 bits.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Avx2(());
+    pub(crate) struct Avx2(());
 
     /// A machine with AVX-512: 32 registers.
     #[derive(Clone, Copy)]
-    pub(in super::super) struct Avx512(());
+    pub(crate) struct Avx512(());
+
+    impl Level {
+        /// Runs a task compiled for the machine.
+        #[inline]
+        pub(crate) fn run<T: Task>(self, task: T) {
+            #[target_feature(enable = "avx2")]
+            fn short<T: Task>(task: T) {
+                task.run();
+            }
+            #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2")]
+            fn long<T: Task>(task: T) {
+                task.run();
+            }
+            match self {
+                Level::Portable(_) => task.run(),
+                // SAFETY: the value proves that the machine has these instructions.
+                Level::Avx2(_) => unsafe { short(task) },
+                // SAFETY: the same.
+                Level::Avx512(_) => unsafe { long(task) },
+            }
+        }
+    }
 
     macro_rules! kernel {
         ($level:ident, $features:literal, $vector:ident) => {
@@ -251,6 +217,15 @@ mod x86 {
         type Long = Single8;
     }
 
+    /// The first elements of a slice that is too short, followed by 0.
+    #[cold]
+    #[inline(never)]
+    fn begin<R: Real, const W: usize>(from: &[R]) -> [R; W] {
+        let mut lanes = [R::zero(); W];
+        crate::workspace::copy(&mut lanes, from);
+        lanes
+    }
+
     macro_rules! vector {
         ($name:ident, $inner:ident, $t:ident, $width:literal, $splat:ident, $fnmadd:ident, $max:ident, $abs:expr) => {
             /// A vector of a machine's own.
@@ -270,7 +245,7 @@ mod x86 {
                 }
                 #[inline(always)]
                 fn begin(from: &[$t]) -> Self {
-                    let lanes: [$t; $width] = Lanes::<$t>::begin(from);
+                    let lanes: [$t; $width] = from.first_chunk().copied().unwrap_or_else(|| begin(from));
                     unsafe { $name(transmute::<[$t; $width], $inner>(lanes)) }
                 }
                 #[inline(always)]
@@ -298,7 +273,7 @@ mod x86 {
                 #[inline(always)]
                 fn largest(self) -> $t {
                     let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
-                    Lanes::<$t>::largest(lanes)
+                    lanes.into_iter().fold(0.0, |m, x| if x > m { x } else { m })
                 }
             }
         };
@@ -316,15 +291,25 @@ mod x86 {
 
 #[cfg(not(target_arch = "x86_64"))]
 /// What the machine at hand can do.
-pub(super) enum Level {
+#[derive(Clone, Copy)]
+pub(crate) enum Level {
     Portable(Portable),
 }
 
 #[cfg(not(target_arch = "x86_64"))]
 impl Level {
     #[inline]
-    pub(super) fn here() -> Self {
+    pub(crate) fn here() -> Self {
         Level::Portable(Portable)
+    }
+    /// Runs a task.
+    #[inline]
+    pub(crate) fn run<T: Task>(self, task: T) {
+        task.run();
+    }
+    #[cfg(test)]
+    pub(super) fn all() -> [Self; 1] {
+        [Self::here()]
     }
 }
 

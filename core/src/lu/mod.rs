@@ -3,22 +3,38 @@
 //! Column-major storage with leading dimension `ld`; an odd multiple of a cache line keeps columns from falling on the same
 //! lines. Right-hand sides appended behind the matrix ride along with the elimination. The elimination is recursive
 //! (Toledo 1997): it halves the columns down to blocks of eight, so that nearly all work is products of large blocks, which
-//! one register tile does ([`tile`]), compiled for what the machine at hand offers ([`kernel`]).
+//! one register tile does, compiled for what the machine at hand offers (module `kernel` chooses; `tile`, `portable`).
 //! Cost: 2n³/3 for [`factor`], 2n² for each solve.
 
 mod kernel;
+mod portable;
+#[cfg(target_arch = "x86_64")]
 mod tile;
 
 use crate::scalar::Real;
 use crate::status::{Result, Status};
 use crate::workspace::{at, part, part_mut, put};
 use kernel::{Kernel, Level};
-use tile::{BLOCK, Rows, exchange};
 
 pub use kernel::Vectors;
+pub(crate) use kernel::{Level as Machine, Task};
 
 /// Columns of the factors that one pass over the right columns takes: what a row of tiles reads of them fits the first cache.
 const DEPTH: usize = 128;
+
+/// Side of a triangle that is solved at once, and columns that are eliminated together.
+const BLOCK: usize = 8;
+
+/// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
+#[derive(Clone, Copy)]
+struct Rows {
+    /// First row of C.
+    to: usize,
+    /// Rows of C.
+    count: usize,
+    /// First row of B.
+    from: usize,
+}
 
 /// A factorized matrix: unit lower and upper triangle in place, and the row exchanged at each step.
 pub struct Factors<'a, R> {
@@ -32,8 +48,8 @@ pub struct Factors<'a, R> {
 
 /// Runs an expression with the kernel of the machine at hand.
 macro_rules! with_kernel {
-    ($kernel:ident => $run:expr) => {
-        match Level::here() {
+    ($level:expr, $kernel:ident => $run:expr) => {
+        match $level {
             Level::Portable($kernel) => $run,
             #[cfg(target_arch = "x86_64")]
             Level::Avx2($kernel) => $run,
@@ -51,7 +67,7 @@ macro_rules! with_kernel {
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
 pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
-    with_kernel!(kernel => factor_by(kernel, a, ld, n, pivots))
+    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, pivots))
 }
 
 fn factor_by<R: Real, K: Kernel<R>>(kernel: K, a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
@@ -82,7 +98,8 @@ fn eliminate<R: Real, K: Kernel<R>>(
     if pivots.len() <= BLOCK {
         return kernel.eliminate_block(block, ld, n, k, pivots);
     }
-    let half = pivots.len().div_ceil(2 * BLOCK) * BLOCK;
+    // A small matrix stays in the cache anyway, and long columns suit loops that have no tile.
+    let half = if pivots.len() <= kernel.small() { BLOCK } else { pivots.len().div_ceil(2 * BLOCK) * BLOCK };
     let (left, right) = block.split_at_mut_checked(half * ld)?;
     let (first, second) = pivots.split_at_mut_checked(half)?;
     let (smallest, largest) = eliminate(kernel, left, ld, n, k, first)?;
@@ -146,6 +163,13 @@ fn exchange_all<R: Real>(columns: &mut [R], ld: usize, k: usize, pivots: &[R]) {
 }
 
 #[inline]
+fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
+    let (x, y) = (at(column, i), at(column, j));
+    put(column, i, y);
+    put(column, j, x);
+}
+
+#[inline]
 fn row_of<R: Real>(pivot: R) -> usize {
     pivot.to_f64() as usize
 }
@@ -155,7 +179,7 @@ impl<R: Real> Factors<'_, R> {
     pub fn solve(&self, b: &mut [R]) {
         let b = part_mut(b, 0, self.pivots.len());
         exchange_all(b, self.ld, 0, self.pivots);
-        with_kernel!(kernel => {
+        with_kernel!(Level::here(), kernel => {
             substitute(kernel, self.matrix(), self.ld, 0, b);
             substitute_back(kernel, self.matrix(), self.ld, 0, b);
         });
@@ -163,12 +187,12 @@ impl<R: Real> Factors<'_, R> {
 
     /// Solves U x = b in place for each column of `b`, which has the matrix's leading dimension or is one column.
     pub fn back_substitute(&self, b: &mut [R]) {
-        with_kernel!(kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
+        with_kernel!(Level::here(), kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
     }
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transposed(&self, b: &mut [R]) {
-        with_kernel!(kernel => self.transposed_by(kernel, b));
+        with_kernel!(Level::here(), kernel => self.transposed_by(kernel, b));
         for (c, row) in self.pivots.iter().enumerate().rev() {
             exchange(b, c, row_of(*row));
         }
@@ -248,6 +272,44 @@ mod tests {
             largest_residual::<f64>(n, 1e-10);
         }
         largest_residual::<f32>(33, 2e-3);
+    }
+
+    /// Factors by every set of instructions that the machine at hand has.
+    fn factors_of_all<R: Real>(a: &[R], ld: usize, n: usize) -> Vec<(Vec<R>, Vec<R>)> {
+        let mut all = Vec::new();
+        for level in Level::all() {
+            let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::zero(); n]);
+            with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, &mut pivots)).unwrap();
+            all.push((lu, pivots));
+        }
+        all
+    }
+
+    fn largest_difference<R: Real>(n: usize, columns: usize, tolerance: f64) {
+        for ld in [n, n + 8] {
+            let a: Vec<R> = random(ld * (n + columns), 5 + n as u64).iter().map(|x| R::lit(*x)).collect();
+            let all = factors_of_all(&a, ld, n);
+            let (lu, pivots) = &all[0];
+            for (other, others_pivots) in &all[1..] {
+                assert_eq!(pivots, others_pivots);
+                for (x, y) in lu.chunks(ld).zip(other.chunks(ld)) {
+                    for (x, y) in x[..n].iter().zip(y) {
+                        assert!((*x - *y).to_f64().abs() < tolerance, "n = {n}, ld = {ld}: {x} and {y}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn instructions_change_the_factors_by_rounding_only() {
+        for n in 1..70 {
+            largest_difference::<f64>(n, n % 7, 1e-11);
+        }
+        largest_difference::<f64>(300, 13, 1e-9);
+        for n in [5, 8, 31, 33] {
+            largest_difference::<f32>(n, 5, 1e-2);
+        }
     }
 
     #[test]

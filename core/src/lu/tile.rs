@@ -1,8 +1,9 @@
-//! The one register tile of the factorization, C ← C − A B, and the loops around it, for any vector type.
+//! The one register tile of the factorization, C ← C − A B, and the loops around it, for a machine's own vectors.
 //!
 //! Everything here is safe and inlined into the entry points of [`super::kernel`], which choose the vector type.
 //! Matrices are column-major with leading dimension `ld`.
 
+use super::{BLOCK, Rows, exchange};
 use crate::scalar::Real;
 use crate::workspace::{at, part, part_mut, put};
 
@@ -29,17 +30,6 @@ pub trait Lanes<R>: Copy {
     fn row(self, i: usize) -> R;
     /// The largest row.
     fn largest(self) -> R;
-}
-
-/// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
-#[derive(Clone, Copy)]
-pub(super) struct Rows {
-    /// First row of C.
-    pub to: usize,
-    /// Rows of C.
-    pub count: usize,
-    /// First row of B.
-    pub from: usize,
 }
 
 /// C ← C − A B, where B and C are rows of the same columns `right` and do not overlap. `left` holds A's columns.
@@ -185,9 +175,6 @@ fn store<R: Real, V: Lanes<R>, const M: usize>(rows: [V; M], to: &mut [R]) {
     }
 }
 
-/// Side of a triangle that is solved at once, and columns that are eliminated together.
-pub(super) const BLOCK: usize = 8;
-
 /// Left-looking elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and
 /// the largest pivot; `None` when there is none.
 #[inline(always)]
@@ -280,13 +267,6 @@ fn reduce_column<R: Real, V: Lanes<R>, const C: usize>(done: &[R], ld: usize, k:
         }
     }
     size
-}
-
-#[inline(always)]
-pub(super) fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
-    let (x, y) = (at(column, i), at(column, j));
-    put(column, i, y);
-    put(column, j, x);
 }
 
 /// Solves with the triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]): the unit lower one, or the upper one.

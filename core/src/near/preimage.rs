@@ -110,6 +110,32 @@ impl<R: Real> Source<'_, R> {
         found
     }
 
+    /// Real part and magnitude of the imaginary part of the preimage of z next to the boundary; `None` where it is too far to
+    /// matter for the trapezoidal rule.
+    pub(crate) fn footprint(&self, z: Complex<R>) -> Option<(R, R)> {
+        let t = match &self.view.curve {
+            Curve::Ellipse(e) => {
+                let (z, one) = (z + self.record.origin, complex(R::one(), R::zero()));
+                let c2 = complex((e.a + e.b) * (e.a - e.b), R::zero());
+                let w = (z + z * csqrt(one - c2 / (z * z))) / (e.a + e.b);
+                let t = cln(w);
+                complex(t.im, t.re.abs())
+            }
+            _ => {
+                let size = |k: usize| {
+                    let (d, dg) = self.arm(k, z);
+                    dot(d, d) / dot(dg, dg)
+                };
+                let closest = (0..self.nodes.t.len()).map(|k| (size(k), k));
+                let (_, j) = closest.fold((R::MAX, 0), |best, new| if new.0 < best.0 { new } else { best });
+                let u = self.newton(j, z)?;
+                complex(at(self.nodes.t, j) + u.re, u.im.abs())
+            }
+        };
+        let near = self.view.grading.plain() * t.im * R::count(self.nodes.t.len()) < reach();
+        (near && t.im > R::zero()).then_some((t.re, t.im))
+    }
+
     /// Newton's method from the nodes that are close relative to their spacing, and the choice among the roots found by the
     /// known sum of the weights.
     fn by_search(&self, z: Complex<R>, own: Option<usize>) -> Found<R> {

@@ -105,6 +105,9 @@ int main(void) {
     MUST(nekton_model_joint(model, 1, &joint_info));
     if (nekton_model_notice(model, 0, &place, &notice) != NEKTON_E_OUT_OF_RANGE) return 3;
     if (joint_info.prescribed || link_info.place.link != 2) return 4;
+    size_t nodes = 0;
+    MUST(nekton_model_nodes(model, &link_info.place, &nodes));
+    if (nodes != link_info.nodes) return 5;
     MUST(nekton_model_outline_point(model, &link_info.place, (real)1.0, point));
     print("outline_point", point, 2);
 
@@ -173,6 +176,8 @@ int main(void) {
     print("impulse", a, 3);
     MUST(nekton_sim_resolution(sim, &resolution, &diag));
     print("resolution", &resolution.mass, 1);
+    MUST(nekton_sim_indicators(sim, &resolution, &diag));
+    print("indicators", &resolution.bound, 1);
     MUST(nekton_sim_gap(sim, &gap, &diag));
     print("gap", &gap.distance, 1);
     MUST(nekton_sim_counters(sim, &counters));

@@ -117,6 +117,7 @@ precision!(
     nekton_model_link = model_link,
     nekton_model_joint = model_joint,
     nekton_model_notice = model_notice,
+    nekton_model_nodes = model_nodes,
     nekton_model_outline_point = model_outline_point,
     nekton_sim_req = sim_req,
     nekton_sim_init = sim_init,
@@ -149,6 +150,7 @@ precision!(
     nekton_sim_gyroscopic = sim_gyroscopic,
     nekton_sim_energy = sim_energy,
     nekton_sim_impulse = sim_impulse,
+    nekton_sim_indicators = sim_indicators,
     nekton_sim_resolution = sim_resolution,
     nekton_sim_gap = sim_gap,
     nekton_sim_counters = sim_counters
@@ -170,6 +172,7 @@ precision!(
     nekton32_model_link = model_link,
     nekton32_model_joint = model_joint,
     nekton32_model_notice = model_notice,
+    nekton32_model_nodes = model_nodes,
     nekton32_model_outline_point = model_outline_point,
     nekton32_sim_req = sim_req,
     nekton32_sim_init = sim_init,
@@ -202,6 +205,7 @@ precision!(
     nekton32_sim_gyroscopic = sim_gyroscopic,
     nekton32_sim_energy = sim_energy,
     nekton32_sim_impulse = sim_impulse,
+    nekton32_sim_indicators = sim_indicators,
     nekton32_sim_resolution = sim_resolution,
     nekton32_sim_gap = sim_gap,
     nekton32_sim_counters = sim_counters

@@ -1,0 +1,289 @@
+//! The rows of the table: what is measured against what, and what must come out.
+
+use crate::lapack::Lapack;
+use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
+use crate::timing::Turns;
+use nekton::Method;
+use nekton::scene::{Body, ForceFormula, Harmonic, Quadrature, Root, Scene, Signal};
+use nekton_tests::{adams, body, paper_ellipse, simulation, two_ellipses};
+use std::time::Instant;
+
+/// A measurement: a ratio of two times, or one time.
+pub struct Row {
+    /// What is measured, and against what.
+    pub name: &'static str,
+    /// Unknowns of the boundary system, or what else tells rows of a name apart.
+    pub size: usize,
+    /// Largest value that is acceptable.
+    pub must: f64,
+    /// What would be better.
+    pub aim: f64,
+    /// The guard holds it to `must`. The other rows are goals that are not reached, or need more than one free processor.
+    pub guarded: bool,
+    run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>,
+}
+
+/// What came out.
+pub struct Measured {
+    /// Seconds.
+    pub time: f64,
+    /// Seconds that it is divided by; 1 if the time itself is meant.
+    pub by: f64,
+    /// The value that `must` and `aim` speak of: the median of the ratios, or the time itself.
+    pub ratio: f64,
+    /// What else is worth knowing.
+    pub note: String,
+}
+
+impl Measured {
+    fn seconds(time: f64, note: String) -> Self {
+        Measured { time, by: 1.0, ratio: time, note }
+    }
+}
+
+impl Row {
+    /// Columns of [`Row::line`].
+    pub const HEAD: &'static str = "measure,size,value,must,aim,seconds,divisor_seconds,note";
+
+    /// Runs it.
+    pub fn measure(&self, lapack: &Lapack) -> Result<Measured, String> {
+        (self.run)(lapack)
+    }
+
+    /// A line of a table.
+    pub fn line(&self, measured: &Result<Measured, String>) -> String {
+        let (name, size, must, aim) = (self.name, self.size, self.must, self.aim);
+        match measured {
+            Ok(m) => {
+                format!("{name},{size},{:.3e},{must},{aim},{:.4e},{:.4e},{}", m.ratio, m.time, m.by, m.note)
+            }
+            Err(why) => format!("{name},{size},,{must},{aim},,,{why}"),
+        }
+    }
+}
+
+/// A scene's evaluation against LAPACK's factorization of order `order`.
+fn against_getrf(lapack: &Lapack, mut evaluation: Evaluation<f64>, order: usize) -> Measured {
+    let ld = order + 8;
+    let a = diagonal_dominant(order, ld);
+    let mut copy = a.clone();
+    let mut pivots = vec![0; order];
+    let turns = if order > 600 { Turns { rounds: 9, ..Turns::THREAD } } else { Turns::THREAD };
+    let (times, ratios) = turns.run(&mut [
+        &mut || evaluation.run(),
+        // The matrix must come from somewhere; an evaluation makes its own.
+        &mut || {
+            copy.copy_from_slice(&a);
+            lapack.dgetrf(&mut copy, ld, order, &mut pivots);
+        },
+    ]);
+    Measured { time: times[0], by: times[1], ratio: ratios[0], note: String::new() }
+}
+
+/// A matrix like those of the boundary systems: the unit matrix and something smaller.
+pub fn diagonal_dominant(n: usize, ld: usize) -> Vec<f64> {
+    let mut s = 1u64;
+    let mut random = || {
+        s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (s >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let mut a: Vec<f64> = (0..ld * n).map(|_| random() / n as f64).collect();
+    a.iter_mut().step_by(ld + 1).for_each(|x| *x += 1.0);
+    a
+}
+
+fn one_against_other(mut one: Evaluation<f64>, mut other: Evaluation<f64>) -> Measured {
+    let (times, ratios) = Turns::THREAD.run(&mut [&mut || one.run(), &mut || other.run()]);
+    let note = format!("{} and {} unknowns", one.unknowns(), other.unknowns());
+    Measured { time: times[0], by: times[1], ratio: ratios[0], note }
+}
+
+/// The evaluation of ellipses in an array.
+pub fn ellipses(columns: usize, rows: usize, gap: f64, nodes: usize, quadrature: Quadrature) -> Evaluation<f64> {
+    let link = [ellipse(nodes)];
+    Evaluation::new(&scene(&array(&link, columns, rows, gap), quadrature))
+}
+
+/// The fewest nodes per body with which accelerations differ from converged ones by no more than `error` (relative to the
+/// largest).
+fn fewest_nodes(columns: usize, rows: usize, gap: f64, error: f64) -> Result<usize, String> {
+    let mut reference = ellipses(columns, rows, gap, 320, Quadrature::Graded);
+    reference.run();
+    let scale = reference.accelerations().iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let accurate = |nodes: usize| {
+        let mut evaluation = ellipses(columns, rows, gap, nodes, Quadrature::Graded);
+        evaluation.run();
+        let pairs = evaluation.accelerations().iter().zip(reference.accelerations());
+        pairs.fold(0.0f64, |m, (x, y)| m.max((x - y).abs())) <= error * scale
+    };
+    (16..=256).step_by(8).find(|n| accurate(*n)).ok_or_else(|| format!("not reached with 256 nodes, gap {gap}"))
+}
+
+fn at_equal_accuracy(lapack: &Lapack, columns: usize, rows: usize, gap: f64, error: f64) -> Result<Measured, String> {
+    let nodes = fewest_nodes(columns, rows, gap, error)?;
+    let mut measured = against_getrf(lapack, ellipses(columns, rows, gap, nodes, Quadrature::Graded), 256);
+    measured.note = format!("{nodes} nodes per body");
+    Ok(measured)
+}
+
+/// A run of the paper's example 9.2 to t = 10: where it ends, evaluations, seconds.
+struct Passing {
+    end: Vec<f64>,
+    evaluations: u64,
+    seconds: f64,
+}
+
+impl Passing {
+    fn run(nodes: usize, tolerance: f64, quadrature: Quadrature, force: ForceFormula) -> Result<Self, String> {
+        let links = paper_ellipse(nodes);
+        let bodies = two_ellipses(&links);
+        let scene = Scene { bodies: &bodies, quadrature, force, ..Scene::new(1.0, 0.0) };
+        let mut seconds = f64::MAX;
+        let mut last = None;
+        for _ in 0..3 {
+            let mut sim = simulation(&scene, adams(tolerance));
+            let mut sim = sim.view();
+            let start = Instant::now();
+            sim.advance(10.0).map_err(|error| error.to_string())?;
+            seconds = seconds.min(start.elapsed().as_secs_f64());
+            last = Some((sim.positions().to_vec(), sim.counters().evaluations));
+        }
+        let (end, evaluations) = last.ok_or("no run")?;
+        Ok(Self { end, evaluations, seconds })
+    }
+
+    fn error(&self, reference: &Self) -> f64 {
+        self.end.iter().zip(&reference.end).fold(0.0, |m, (x, y)| m.max((x - y).abs()))
+    }
+}
+
+/// The cheapest run of the example among some nodes and tolerances that ends within 1e-9 of the converged one.
+fn cheapest_passing(quadrature: Quadrature, force: ForceFormula, nodes: &[usize]) -> Result<(usize, Passing), String> {
+    let reference = Passing::run(320, 1e-13, Quadrature::Graded, ForceFormula::default())?;
+    for nodes in nodes {
+        for tolerance in [3e-10, 1e-10, 3e-11, 1e-11, 1e-12] {
+            let run = Passing::run(*nodes, tolerance, quadrature, force)?;
+            if run.error(&reference) <= 1e-9 {
+                return Ok((*nodes, run));
+            }
+        }
+    }
+    Err("1e-9 is not reached".into())
+}
+
+fn graded_passing() -> Result<(usize, Passing), String> {
+    cheapest_passing(Quadrature::Graded, ForceFormula::default(), &[24, 28, 32, 40, 48, 64, 96, 128, 160, 192, 240])
+}
+
+fn swimming(nodes: usize) -> Measured {
+    let beat = [Harmonic { amplitude: 0.3, frequency: 2.0, phase: 0.3, offset: 0.1 }];
+    let joined = swimmer(6, nodes, &beat);
+    let neighbour = [ellipse(nodes)];
+    let far = body(&neighbour, [0.0, 4.0, 0.0], [0.1, 0.0, 0.0]);
+    let whole = [body(&joined, [0.0; 3], [0.1, 0.0, 0.1]), far];
+    let free = [ellipse(nodes)];
+    let parts: Vec<Body<'_, f64>> =
+        (0..6).map(|i| body(&free, [-2.6 * f64::from(i), 0.0, 0.0], [0.1, 0.0, 0.1])).chain([far]).collect();
+    let of = |bodies: &[Body<'_, f64>]| {
+        Evaluation::new(&Scene { bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) })
+    };
+    one_against_other(of(&whole), of(&parts))
+}
+
+fn walls(nodes: usize) -> Measured {
+    let link = [ellipse(nodes / 2)];
+    let bodies = [body(&link, [-1.3, 0.0, 0.1], [0.1, 0.0, 0.1]), body(&link, [1.3, 0.0, 0.0], [0.0, 0.1, 0.0])];
+    let obstacles = banks(3 * nodes / 2);
+    let fixed = Scene { bodies: &bodies, obstacles: &obstacles, ..scene(&[], Quadrature::Plain) };
+    let wall_links = obstacles.map(|o| [nekton_tests::link(o.shape, 1.0, o.nodes)]);
+    let held = Root::Prescribed([Signal::Constant(0.0); 3]);
+    let moving = [0, 1].map(|i| Body {
+        root: held,
+        ..body(&wall_links[i], [obstacles[i].position[0], obstacles[i].position[1], 0.0], [0.0; 3])
+    });
+    let all: Vec<Body<'_, f64>> = bodies.into_iter().chain(moving).collect();
+    one_against_other(Evaluation::new(&fixed), Evaluation::new(&scene(&all, Quadrature::Plain)))
+}
+
+fn lone_step() -> Measured {
+    let link = [ellipse(64)];
+    let bodies = [body(&link, [0.0; 3], [0.3, 0.1, 0.4])];
+    let mut sim = simulation(&scene(&bodies, Quadrature::Graded), Method::Rk4 { step: 1e-6 });
+    let mut sim = sim.view();
+    let (times, _) = Turns::THREAD.run(&mut [&mut || sim.step().expect("a lone body can step")]);
+    Measured::seconds(times[0], String::new())
+}
+
+/// Time of two rollouts one after the other, divided by that of two at once on two threads.
+fn rollouts() -> Measured {
+    let link = [ellipse(32)];
+    let bodies = array(&link, 2, 2, 0.5);
+    let model = std::sync::Arc::new(nekton::ModelBuf::new(&scene(&bodies, Quadrature::Plain)).expect("accepted"));
+    let make = || nekton::SimBuf::new(model.clone(), Method::Rk4 { step: 1e-7 }).expect("accepted");
+    let run = |sim: &mut nekton::SimBuf<f64>| {
+        for _ in 0..50 {
+            sim.view().step().expect("can step");
+        }
+    };
+    let (mut a, mut b, mut c, mut d) = (make(), make(), make(), make());
+    let (times, ratios) = Turns::WALL.run(&mut [
+        &mut || {
+            run(&mut a);
+            run(&mut b);
+        },
+        &mut || {
+            std::thread::scope(|scope| {
+                scope.spawn(|| run(&mut c));
+                run(&mut d);
+            });
+        },
+    ]);
+    Measured { time: times[1], by: times[0], ratio: 1.0 / ratios[0], note: "inverse of the gain".into() }
+}
+
+/// Rows that reach what they must.
+const GUARDED: [&str; 2] = ["articulated body of 6 links / the links free", "the same / plain trapezoid with (2.15)"];
+
+/// Every row that is measured by time.
+pub fn rows() -> Vec<Row> {
+    let mut all = Vec::new();
+    let mut row = |name, size, must, aim, run: Box<dyn Fn(&Lapack) -> Result<Measured, String>>| {
+        let guarded = GUARDED.contains(&name);
+        all.push(Row { name, size, must, aim, guarded, run });
+    };
+    let name = "evaluation of 4 bodies / dgetrf(N)";
+    for (n, must, aim) in [(64, 1.1, 0.7), (128, 0.88, 0.65), (256, 0.84, 0.66), (512, 0.85, 0.7), (1024, 0.88, 0.76)] {
+        let run = move |lapack: &Lapack| Ok(against_getrf(lapack, ellipses(2, 2, 1.0, n / 4, Quadrature::Plain), n));
+        row(name, n, must, aim, Box::new(run));
+    }
+    let name = "4 ellipses at gap 0.5 to 1e-12 / dgetrf(256)";
+    row(name, 256, 0.25, 0.15, Box::new(|lapack| at_equal_accuracy(lapack, 2, 2, 0.5, 1e-12)));
+    let name = "2 ellipses at gap 0.1 to 5e-12 / dgetrf(256)";
+    row(name, 256, 0.2, 0.12, Box::new(|lapack| at_equal_accuracy(lapack, 2, 1, 0.1, 5e-12)));
+    let near = |_: &Lapack| {
+        let of = |quadrature| ellipses(2, 1, 1e-3, 64, quadrature);
+        Ok(one_against_other(of(Quadrature::Graded), of(Quadrature::Plain)))
+    };
+    row("near contact (gap 1e-3) / plain with the same nodes", 128, 4.0, 2.0, Box::new(near));
+    let name = "20 ellipses of 64 nodes / dgetrf(1280)";
+    let crowd = |lapack: &Lapack| Ok(against_getrf(lapack, ellipses(5, 4, 1.0, 64, Quadrature::Plain), 1280));
+    row(name, 1280, 1.0, 0.5, Box::new(crowd));
+    row("fixed walls with 3/4 of the nodes / moving walls", 256, 0.6, 0.45, Box::new(|_| Ok(walls(64))));
+    row("articulated body of 6 links / the links free", 224, 1.0, 0.8, Box::new(|_| Ok(swimming(32))));
+    row("lone rigid body: one step of rk4 (s)", 64, 1e-6, 3e-7, Box::new(|_| Ok(lone_step())));
+    row("two rollouts on 2 threads / one after the other", 128, 1.0 / 1.9, 0.5, Box::new(|_| Ok(rollouts())));
+    let whole = |_: &Lapack| {
+        let (nodes, run) = graded_passing()?;
+        Ok(Measured::seconds(run.seconds, format!("{nodes} nodes {} evaluations", run.evaluations)))
+    };
+    row("paper 9.2 to t = 10 within 1e-9 (s)", 10, 0.05, 0.02, Box::new(whole));
+    let against_plain = |_: &Lapack| {
+        let (nodes, run) = graded_passing()?;
+        let sizes = [96, 128, 160, 192, 224, 256];
+        let (others, other) = cheapest_passing(Quadrature::Plain, ForceFormula::Boundary, &sizes)?;
+        let note = format!("{nodes} and {others} nodes per body");
+        Ok(Measured { time: run.seconds, by: other.seconds, ratio: run.seconds / other.seconds, note })
+    };
+    row("the same / plain trapezoid with (2.15)", 10, 0.1, 1.0 / 30.0, Box::new(against_plain));
+    all
+}

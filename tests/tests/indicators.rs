@@ -1,0 +1,284 @@
+//! Error indicators bound the error, also where symmetry hides it; a tolerance that is missed is noticed.
+
+use nekton::scene::{Quadrature, Scene, Shape};
+use nekton::status::{Place, Status};
+use nekton::{ModelBuf, Resolution, SimBuf};
+use nekton_tests::*;
+
+/// What is compared: total mass, Christoffel force, indicators of one evaluation and from all of the added mass.
+struct Looked {
+    mass: Vec<Vec<f64>>,
+    total: Vec<Vec<f64>>,
+    force: Vec<f64>,
+    energy: f64,
+    cheap: Resolution<f64>,
+    full: Resolution<f64>,
+}
+
+const UNIT: f64 = 1.2; // reach of the largest outline below
+
+fn pair(shapes: &[Shape<f64>; 2], at: [[f64; 3]; 2], v: [[f64; 3]; 2], nodes: usize, quadrature: Quadrature) -> Looked {
+    let links = shapes.map(|s| [link(s, 1.0, nodes)]);
+    let bodies = [body(&links[0], at[0], v[0]), body(&links[1], at[1], v[1])];
+    let mut sim = at_start(&Scene { bodies: &bodies, quadrature, ..Scene::new(1.0, 0.0) });
+    let mut sim = sim.view();
+    let cheap = sim.indicators().unwrap();
+    let energy = sim.energy().unwrap().kinetic_fluid;
+    Looked {
+        force: vector(&mut sim, |s, out| s.christoffel(out)),
+        mass: matrix(&mut sim, |s, out| s.added_mass(out)),
+        total: matrix(&mut sim, |s, out| s.mass_matrix(out)),
+        energy,
+        cheap,
+        full: sim.resolution().unwrap(),
+    }
+}
+
+/// Relative errors of mass (by the diagonal) and force (by the largest, or energy over length), as the indicators are defined.
+fn errors(a: &Looked, exact: &Looked) -> [f64; 2] {
+    let scaled = |f: &[f64]| {
+        f.iter().enumerate().fold(0.0, |m: f64, (k, x)| m.max(if k % 3 == 2 { x.abs() / UNIT } else { x.abs() }))
+    };
+    let difference: Vec<f64> = a.force.iter().zip(&exact.force).map(|(a, b)| a - b).collect();
+    let mut mass = 0.0f64;
+    for (i, (a, b)) in a.mass.iter().zip(&exact.mass).enumerate() {
+        for (j, (a, b)) in a.iter().zip(b).enumerate() {
+            mass = mass.max((a - b).abs() / (exact.total[i][i] * exact.total[j][j]).sqrt());
+        }
+    }
+    [mass, scaled(&difference) / scaled(&exact.force).max(exact.energy / UNIT)]
+}
+
+/// A sequence of numbers in (0, 1), the same on every machine.
+fn numbers() -> impl FnMut(f64, f64) -> f64 {
+    let mut x = 88_172_645_463_325_252_u64;
+    move |from, to| {
+        x ^= x << 13;
+        x ^= x >> 7;
+        x ^= x << 17;
+        from + (to - from) * (x >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Neither less than a twentieth of the error nor, as far as rounding goes, at all without one.
+fn bounds(looked: &Looked, exact: &Looked, what: &str) {
+    let [mass, force] = errors(looked, exact);
+    let worst = mass.max(force);
+    // An error above 1 needs no finer measure; below 1e-12 rounding is counted.
+    for indicators in [looked.cheap, looked.full] {
+        let bound = indicators.bound();
+        assert!(bound + 1e-12 >= worst.min(1.0), "{what}: mass {mass:.1e}, force {force:.1e}, {indicators:?}");
+    }
+}
+
+#[test]
+fn error_of_random_pairs_is_within_the_bound() {
+    let mut number = numbers();
+    let mut seen = 0;
+    while seen < 12 {
+        let mut ellipse = || Shape::Ellipse { a: number(0.4, 1.2), b: number(0.3, 1.0) };
+        let shapes = [ellipse(), ellipse()];
+        let (distance, (s, c)) = (number(1.6, 2.6), number(0.0, 6.0).sin_cos());
+        let at = [[0.0, 0.0, number(0.0, 6.0)], [distance * c, distance * s, number(0.0, 6.0)]];
+        let v = [[0; 3]; 2].map(|v: [i32; 3]| v.map(|_| number(-1.0, 1.0)));
+        let links = shapes.map(|s| [link(s, 1.0, 64)]);
+        let bodies = [body(&links[0], at[0], v[0]), body(&links[1], at[1], v[1])];
+        let Ok(model) = ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }) else { continue };
+        let Ok(mut sim) = SimBuf::new(model.into(), adams(1e-6)) else { continue };
+        let gap = sim.view().gap().distance;
+        if gap < 0.1 {
+            continue;
+        }
+        seen += 1;
+        for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+            let exact = pair(&shapes, at, v, 280, quadrature);
+            for nodes in [16, 32, 48] {
+                let what = format!("{shapes:?} at {at:?}, gap {gap:.2}, {nodes} nodes, {quadrature:?}");
+                bounds(&pair(&shapes, at, v, nodes, quadrature), &exact, &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn error_of_mirror_images_is_within_the_bound_though_everything_is_symmetric() {
+    let shapes = [disc(1.0); 2];
+    let at = [[0.0; 3], [2.2, 0.0, 0.0]];
+    let v = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        let exact = pair(&shapes, at, v, 320, quadrature);
+        for nodes in [16, 24, 32, 48, 64] {
+            let looked = pair(&shapes, at, v, nodes, quadrature);
+            assert!(looked.cheap.mass.max(looked.cheap.force) < 1e-13);
+            bounds(&looked, &exact, &format!("{nodes} nodes, {quadrature:?}"));
+        }
+    }
+}
+
+#[test]
+fn a_thin_body_alone_tells_its_error() {
+    for (nodes, shortcuts) in [(16, true), (16, false), (32, true), (32, false)] {
+        let added = |quadrature: Quadrature, nodes| {
+            let links = [link(Shape::Ellipse { a: 1.0, b: 0.2 }, 0.0, nodes)];
+            let bodies = [body(&links, [0.0, 0.0, 0.3], [0.3, 0.4, 0.5])];
+            let mut sim = at_start(&Scene { bodies: &bodies, quadrature, shortcuts, ..Scene::new(1.0, 0.0) });
+            let mut sim = sim.view();
+            (matrix(&mut sim, |s, out| s.mass_matrix(out)), sim.indicators().unwrap().bound())
+        };
+        let (computed, bound) = added(Quadrature::Plain, nodes);
+        let (exact, _) = added(Quadrature::Plain, 256);
+        let error = (0..3).map(|k| difference(&computed[k], &exact[k])).fold(0.0, f64::max);
+        // b/a = 0.2 costs (2/3)^nodes.
+        assert!(error > 1e-7 && bound > error, "{nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+        assert!(bound < 1e4 * error);
+    }
+}
+
+#[test]
+fn indicators_do_not_depend_on_the_unit_of_length() {
+    let look = |unit: f64| {
+        let links =
+            [Shape::Ellipse { a: unit, b: 0.6 * unit }, Shape::Star { radius: 0.7 * unit, amplitude: 0.2, lobes: 3 }]
+                .map(|s| [link(s, 1.0, 24)]);
+        let v = [0.3 * unit, -0.2 * unit, 0.4];
+        let bodies = [body(&links[0], [0.0; 3], v), body(&links[1], [2.1 * unit, 0.3 * unit, 0.5], [0.0; 3])];
+        let mut sim = at_start(&Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) });
+        let mut sim = sim.view();
+        [sim.indicators().unwrap(), sim.resolution().unwrap()]
+    };
+    for (a, b) in look(1.0).into_iter().zip(look(1e5)) {
+        for (a, b) in [(a.mass, b.mass), (a.force, b.force), (a.quadrature, b.quadrature)] {
+            assert!(a > 1e-6, "not resolved, so that there is something to compare: {a:.1e}");
+            assert_near(b / a, 1.0, 1e-8);
+        }
+    }
+}
+
+/// Two ellipses that pass each other within t = 2 at a gap of a few tenths, then part.
+fn passing(tolerance: Option<f64>, look: impl FnOnce(&mut nekton::Sim<'_, f64>)) {
+    let links = [link(Shape::Ellipse { a: 1.0, b: 0.5 }, 1.0, 32)];
+    let bodies = [body(&links, [-2.0, 0.6, 0.0], [1.0, 0.0, 0.0]), body(&links, [2.0, -0.6, 0.0], [-1.0, 0.0, 0.0])];
+    let scene = Scene { bodies: &bodies, tolerance, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) };
+    look(&mut simulation(&scene, adams(1e-8)).view());
+}
+
+#[test]
+fn a_missed_tolerance_is_noticed_when_and_where_it_is_missed() {
+    passing(Some(1e-4), |sim| {
+        assert_eq!(sim.notice(), None, "at the start they are far apart");
+        sim.advance(0.1).unwrap();
+        assert_eq!(sim.notice(), None);
+        // One call across the passage: at its end all is well again, but it is remembered.
+        sim.advance(4.0).unwrap();
+        let (time, notice) = sim.notice().unwrap();
+        assert!((1.0..3.0).contains(&time), "worst at t = {time}");
+        assert_eq!((notice.status, notice.what), (Status::Unresolved, "error"));
+        assert_eq!((notice.place, notice.other), (Place::Link(0, 0), Some(Place::Link(1, 0))));
+        assert_eq!(notice.value, sim.indicators().unwrap().bound());
+        assert!(notice.value > 1e-4);
+        sim.advance(4.5).unwrap();
+        assert_eq!(sim.notice(), None);
+    });
+    passing(None, |sim| {
+        sim.advance(4.0).unwrap();
+        assert!(sim.notice().is_none() && sim.indicators().unwrap().bound() > 1e-4);
+    });
+}
+
+#[test]
+fn steps_of_every_method_tell_the_indicators_of_where_they_arrive() {
+    for method in [adams(1e-8), nekton::Method::Rk4 { step: 0.01 }, nekton::Method::Abm4 { step: 0.01 }] {
+        let links = [link(Shape::Ellipse { a: 1.0, b: 0.5 }, 1.0, 24)];
+        let bodies =
+            [body(&links, [-1.2, 0.6, 0.0], [1.0, 0.2, 0.3]), body(&links, [1.2, -0.6, 0.0], [-1.0, 0.0, 0.0])];
+        let scene = Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) };
+        let mut sim = simulation(&scene, method);
+        let mut sim = sim.view();
+        for _ in 0..12 {
+            sim.step().unwrap();
+        }
+        let (step, y, t) = (sim.indicators().unwrap(), sim.state().to_vec(), sim.time());
+        sim.set_state(t, &y).unwrap();
+        let here = sim.indicators().unwrap();
+        for (a, b) in [(step.mass, here.mass), (step.force, here.force), (step.quadrature, here.quadrature)] {
+            assert_near(a / b, 1.0, 1e-4);
+        }
+    }
+}
+
+#[test]
+fn automatic_nodes_meet_the_tolerance() {
+    let fish = [[1.0, 0.0], [0.4, 0.25], [-0.5, 0.15], [-1.0, 0.0], [-0.5, -0.15], [0.4, -0.25]];
+    let shapes = [
+        Shape::Ellipse { a: 1.0, b: 0.6 },
+        Shape::Star { radius: 0.6, amplitude: 0.2, lobes: 3 },
+        Shape::Rectangle { width: 1.2, height: 0.8, radius: Some(0.1) },
+        Shape::Curve { points: &fish },
+    ];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        for (k, shape) in shapes.into_iter().enumerate() {
+            let looked = |nodes: usize, tolerance| {
+                let links = [link(shape, 1.0, nodes)];
+                let other = [link(shapes[0], 1.0, nodes)];
+                let bodies =
+                    [body(&links, [0.0; 3], [0.3, 0.2, 0.1]), body(&other, [0.4, 2.1, 0.3], [-0.1, -0.4, 0.2])];
+                let (tank, obstacles) =
+                    (wall(disc(5.0), [0.0; 2], 0.0, nodes), [wall(shapes[1], [3.0, 0.0], 0.2, nodes)]);
+                let (tank, obstacles): (_, &[_]) = if k % 2 == 0 { (Some(tank), &obstacles) } else { (None, &[]) };
+                let scene = Scene { bodies: &bodies, tank, obstacles, quadrature, tolerance, ..Scene::new(1.0, 0.0) };
+                let model = ModelBuf::resolved(&scene).unwrap();
+                let mut sim = SimBuf::new(model.into(), adams(1e-6)).unwrap();
+                let mut sim = sim.view();
+                let notice = sim.notice();
+                let energy = sim.energy().unwrap().kinetic_fluid;
+                let looked = Looked {
+                    force: vector(&mut sim, |s, out| s.christoffel(out)),
+                    mass: matrix(&mut sim, |s, out| s.added_mass(out)),
+                    total: matrix(&mut sim, |s, out| s.mass_matrix(out)),
+                    energy,
+                    cheap: sim.indicators().unwrap(),
+                    full: sim.resolution().unwrap(),
+                };
+                (looked, notice)
+            };
+            let (exact, _) = looked(256, None);
+            for tolerance in [1e-4, 1e-8] {
+                let (looked, notice) = looked(0, Some(tolerance));
+                let [mass, force] = errors(&looked, &exact);
+                assert!(
+                    mass.max(force) < tolerance,
+                    "{shape:?} {quadrature:?}: {mass:.1e}, {force:.1e} > {tolerance:.0e}"
+                );
+                assert_eq!(notice, None, "{shape:?} {quadrature:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn automatic_nodes_follow_from_scene_and_tolerance_alone() {
+    let count = |nodes: usize, tolerance: Option<f64>| {
+        let links = [link(Shape::Ellipse { a: 1.0, b: 0.6 }, 1.0, nodes)];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        let obstacles = [wall(Shape::Rectangle { width: 1.0, height: 0.5, radius: Some(0.01) }, [3.0, 0.0], 0.0, 0)];
+        let tank = Some(wall(disc(6.0), [0.0; 2], 0.0, 48));
+        let scene = Scene { bodies: &bodies, obstacles: &obstacles, tank, tolerance, ..Scene::new(1.0, 0.0) };
+        let model = ModelBuf::new(&scene).unwrap();
+        let model = model.view();
+        assert_eq!(model.nodes(Place::Tank), Some(48), "given counts stay");
+        assert_eq!((model.nodes(Place::Obstacle(1)), model.nodes(Place::Link(0, 1))), (None, None));
+        assert_eq!(model.nodes(Place::Link(0, 0)), Some(model.link(0).unwrap().nodes));
+        assert_eq!(model.plan().tolerance, tolerance.unwrap_or(1e-8));
+        [model.nodes(Place::Link(0, 0)).unwrap(), model.nodes(Place::Obstacle(0)).unwrap()]
+    };
+    let [coarse, default, fine] = [Some(1e-4), None, Some(1e-12)].map(|t| count(0, t));
+    assert!(coarse[0] < default[0] && default[0] < fine[0] && coarse[1] < default[1] && default[1] < fine[1]);
+    assert!(default[1] > default[0], "corners take more");
+    assert_eq!(count(0, Some(1e-8)), default);
+    assert_eq!(count(20, None)[0], 20);
+    let links = [link(Shape::Ellipse { a: 1.0_f32, b: 0.6 }, 1.0, 0)];
+    let bodies = [body(&links, [0.0; 3], [0.1; 3]), body(&links, [2.5, 1.0, 0.0], [0.0; 3])];
+    let mut single = at_start(&Scene { bodies: &bodies, ..Scene::new(1.0_f32, 0.0) });
+    assert_eq!(single.view().notice(), None);
+    assert!((1e-3..2e-3).contains(&single.view().model().plan().tolerance));
+}
