@@ -54,12 +54,7 @@ impl Setup {
 
     /// Starts a simulation.
     pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
-        SimBuf::new(self.model.clone(), method(integrator, self.unit())).map_err(|e| self.problem(&e))
-    }
-
-    /// What the absolute tolerance is a part of.
-    pub fn unit(&self) -> f64 {
-        unit(&self.model.view())
+        SimBuf::new(self.model.clone(), method(integrator, unit(&self.model.view()))).map_err(|e| self.problem(&e))
     }
 
     /// An error of the core as a complaint about the scene file.

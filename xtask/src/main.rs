@@ -33,11 +33,11 @@ commands:
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
+  extremes [TABLE]
+             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
   trade [--quick | --resume]
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
              target/accuracy; --resume: goes on with a run that was cut off)
-  extremes [TABLE]
-             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
