@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nekton::status::{Error, Place};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
-use crate::trade::{Choice, Variant, method, unit};
+use crate::trade::{Choice, Variant, counts, method, unit};
 use nekton::{ModelBuf, SimBuf};
 
 /// A scene with its model.
@@ -43,9 +43,11 @@ impl Setup {
     /// Compiles the scene anew with another setting.
     pub fn remake(&mut self, choice: &Choice) -> Result<(), Problem> {
         let Choice { setting, scale, .. } = choice;
-        let model = self.scene.with_core(|base| {
-            ModelBuf::new(&Variant { base, scale: *scale, force: setting.force, quadrature: setting.quadrature })
-        });
+        let counts = counts(&self.model.view());
+        let (force, quadrature) = (setting.force, setting.quadrature);
+        let model = self
+            .scene
+            .with_core(|base| ModelBuf::new(&Variant { base, counts: &counts, scale: *scale, force, quadrature }));
         self.model = Arc::new(model.map_err(|e| self.problem(&e))?);
         Ok(())
     }

@@ -18,7 +18,7 @@ use crate::scene_file::{Problem, SceneFile};
 use crate::{Ending, say};
 use measure::Bench;
 use reference::{Reference, Refusal};
-pub use setting::{Setting, Variant, method, method_name, parameter, unit};
+pub use setting::{Setting, Variant, counts, method, method_name, parameter, unit};
 use study::{Measured, Status, Study, cheapest, front};
 use table::{Table, beside, mark};
 

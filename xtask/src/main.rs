@@ -35,9 +35,9 @@ commands:
              headers, libraries, pkg-config file and CMake package into folder P
   extremes [TABLE]
              docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
-  trade [--quick | --resume]
+  trade [--quick | --resume | --tables]
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
-             target/accuracy; --resume: goes on with a run that was cut off)
+             target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -57,6 +57,7 @@ fn main() -> ExitCode {
         ["dist", "--prefix", prefix] => dist::run(prefix),
         ["trade"] => trade::run(false),
         ["trade", "--resume"] => trade::run(true),
+        ["trade", "--tables"] => steps::Steps::only("tables", trade::collected),
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["header"] => header::run(),
         ["extremes"] => extremes(&[]),

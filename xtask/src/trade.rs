@@ -15,13 +15,11 @@ const LIMIT: &str = "0.4";
 pub fn run(resume: bool) -> ExitCode {
     let measured = (|| {
         if !resume {
-            let _ = fs::remove_dir_all(root().join("target/trade"));
+            let _ = fs::remove_dir_all(work());
         }
-        let page = root().join("docs/accuracy.md");
         let folder = root().join("docs/accuracy");
-        measure(&scenes()?, &folder, &[])?;
-        let text = fill(&read(&page)?, &folder)?;
-        fs::write(&page, text).map_err(|e| format!("{}: {e}", page.display()))
+        measure(&scenes()?, &work(), &folder, &[])?;
+        tables(&folder)
     })();
     match measured {
         Ok(()) => ExitCode::SUCCESS,
@@ -32,14 +30,59 @@ pub fn run(resume: bool) -> ExitCode {
     }
 }
 
+/// Brings the tables and pictures of all scenes that are measured into a folder.
+fn collect(work: &Path, folder: &Path) -> Result<()> {
+    let put = |file: &str, text: &str| {
+        fs::write(folder.join(file), text).map_err(|e| format!("{}: {e}", folder.join(file).display()))
+    };
+    let mut summary = String::new();
+    for scene in scenes()? {
+        let (name, out) = (name(&scene), work.join(name(&scene)));
+        if !out.join("recommended.csv").is_file() {
+            continue;
+        }
+        // The mark of the scene serves the command only.
+        let reference = Csv::parse(&read(&out.join("reference.csv"))?);
+        let (mark, until) = (reference.cell(0, "scene")?, reference.cell(0, "until")?);
+        let table: String = read(&out.join("trade.csv"))?
+            .lines()
+            .filter(|l| l.starts_with("scene,") || l.starts_with(&format!("{mark},{until},")))
+            .filter_map(|l| Some(format!("{}\n", l.split_once(',')?.1)))
+            .collect();
+        put(&format!("{name}.csv"), &table)?;
+        fs::copy(out.join("trade.svg"), folder.join(format!("{name}.svg"))).map_err(|e| e.to_string())?;
+        let recommended = read(&out.join("recommended.csv"))?;
+        for (k, line) in recommended.lines().enumerate().skip(usize::from(!summary.is_empty())) {
+            summary += &format!("{},{line}\n", if k == 0 { "scene" } else { &name });
+        }
+    }
+    put("recommended.csv", &summary)
+}
+
+/// Fills the page from what is in its folder.
+fn tables(folder: &Path) -> Result<()> {
+    let page = root().join("docs/accuracy.md");
+    fs::write(&page, fill(&read(&page)?, folder)?).map_err(|e| format!("{}: {e}", page.display()))
+}
+
+/// The tables and pictures of what is measured already.
+pub fn collected() -> Outcome {
+    let folder = root().join("docs/accuracy");
+    match collect(&work(), &folder).and_then(|()| tables(&folder)) {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
 /// A minute's worth of it into target/accuracy, for the tests.
 pub fn quick() -> Outcome {
     let tried = (|| {
         let folder = root().join("target/accuracy");
         let _ = fs::remove_dir_all(&folder);
-        let _ = fs::remove_dir_all(root().join("target/trade"));
+        let work = root().join("target/trade-quick");
+        let _ = fs::remove_dir_all(&work);
         let chosen = scenes()?.into_iter().filter(|s| name(s) == "two_eggs").collect::<Vec<_>>();
-        measure(&chosen, &folder, &["--quick", "--until", "2"])?;
+        measure(&chosen, &work, &folder, &["--quick", "--until", "2"])?;
         let page = fill(&read(&root().join("docs/accuracy.md"))?, &folder)?;
         fs::write(folder.join("accuracy.md"), page).map_err(|e| e.to_string())
     })();
@@ -47,6 +90,11 @@ pub fn quick() -> Outcome {
         Ok(()) => Outcome::Passed,
         Err(why) => Outcome::Failed(why),
     }
+}
+
+/// Where a full run keeps what it has measured.
+fn work() -> PathBuf {
+    root().join("target/trade")
 }
 
 fn scenes() -> Result<Vec<PathBuf>> {
@@ -70,7 +118,7 @@ fn done(command: &mut Command) -> Result<()> {
 }
 
 /// Everything that docs/accuracy holds, from runs of the command and of the example `paper`.
-fn measure(traded: &[PathBuf], folder: &Path, few: &[&str]) -> Result<()> {
+fn measure(traded: &[PathBuf], work: &Path, folder: &Path, few: &[&str]) -> Result<()> {
     let quick = !few.is_empty();
     fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let put = |file: &str, text: &str| {
@@ -93,33 +141,30 @@ fn measure(traded: &[PathBuf], folder: &Path, few: &[&str]) -> Result<()> {
     passing.arg("passing").args(quick.then_some("--quick")).arg(folder);
     done(&mut passing)?;
     if !quick {
-        let results = ["fish", "fish_between_obstacles"].map(|s| (s, root().join("target/trade/run").join(s)));
+        let results = ["fish", "fish_between_obstacles"].map(|s| (s, work.join("run").join(s)));
         for (scene, out) in &results {
-            done(nekton().arg("run").arg(root().join(format!("scenes/{scene}.toml"))).arg("--out").arg(out))?;
+            let _ = fs::remove_dir_all(out);
+            fs::create_dir_all(out).map_err(|e| format!("{}: {e}", out.display()))?;
+            // Pictures need five digits, not ten.
+            let text = read(&root().join(format!("scenes/{scene}.toml")))?;
+            let few = text
+                .replace("nodes = 96", "nodes = 40")
+                .replace("nodes = 80", "nodes = 40")
+                .replace("nodes = 160", "nodes = 96");
+            let file = out.with_extension("toml");
+            fs::write(&file, few).map_err(|e| format!("{}: {e}", file.display()))?;
+            done(nekton().arg("run").arg(&file).arg("--out").arg(out))?;
         }
         done(paper().arg("fish").args(results.map(|(_, out)| out)).arg(folder))?;
     }
 
-    let mut summary = String::new();
     for scene in traded {
-        let (name, out) = (name(scene), root().join("target/trade").join(name(scene)));
+        let out = work.join(name(scene));
         done(nekton().arg("trade").arg(scene).arg("--out").arg(&out).args(["--limit", LIMIT]).args(few))?;
-        let reference = Csv::parse(&read(&out.join("reference.csv"))?);
-        let mark = reference.cell(0, "scene")?.to_owned();
-        // The mark serves the command only.
-        let table: String = read(&out.join("trade.csv"))?
-            .lines()
-            .filter_map(|l| l.strip_prefix(&format!("{mark},")).or(l.strip_prefix("scene,")))
-            .map(|l| format!("{l}\n"))
-            .collect();
-        put(&format!("{name}.csv"), &table)?;
-        fs::copy(out.join("trade.svg"), folder.join(format!("{name}.svg"))).map_err(|e| e.to_string())?;
-        let recommended = read(&out.join("recommended.csv"))?;
-        for (k, line) in recommended.lines().enumerate().skip(usize::from(!summary.is_empty())) {
-            summary += &format!("{},{line}\n", if k == 0 { "scene" } else { &name });
-        }
+        // What is measured is kept, also if the rest is cut off.
+        collect(work, folder)?;
     }
-    put("recommended.csv", &summary)
+    Ok(())
 }
 
 /// A table without quotes.
@@ -155,6 +200,15 @@ fn fill(page: &str, folder: &Path) -> Result<String> {
         ("ingredients", ingredients_table(&csv("ingredients.csv")?)?),
     ] {
         page = between(&page, marker, &table)?;
+    }
+    // What other commands measure lies in the repository.
+    for marker in ["near", "extremes"] {
+        let file = root().join(format!("docs/accuracy/{marker}.md"));
+        if file.is_file() {
+            // A fragment's links are relative to its own folder.
+            let text = read(&file)?.replace(&format!("]({marker}"), &format!("](accuracy/{marker}"));
+            page = between(&page, marker, &text)?;
+        }
     }
     Ok(page)
 }

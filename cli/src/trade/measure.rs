@@ -8,7 +8,7 @@ use nekton::scene::{Description, ForceFormula, Quadrature, Scene};
 use nekton::status::{Error, Place};
 use nekton::{Formulation, ModelBuf, Plan, SimBuf};
 
-use super::setting::{Setting, Variant, method, scaled, unit};
+use super::setting::{Setting, Variant, counts, method, scaled, unit};
 
 /// Times at which trajectories are compared, after the start.
 pub const OUTPUTS: usize = 16;
@@ -53,6 +53,7 @@ pub struct Bench<'a> {
     single: Scene<'static, f32>,
     /// Nodes of the link that has most.
     pub nodes: usize,
+    counts: Vec<(Place, usize)>,
     /// For every link the distance of its outermost point from its centre of mass.
     radii: Vec<f64>,
     /// What is computed with the scene's own settings.
@@ -72,6 +73,7 @@ impl<'a> Bench<'a> {
         Ok(Bench {
             nodes: links().map(|l| l.nodes).max().unwrap_or(8),
             radii: links().map(|l| radius(l.place)).collect(),
+            counts: counts(&view),
             plan: *view.plan(),
             single: super::single::single(scene),
             scene,
@@ -138,9 +140,9 @@ impl<'a> Bench<'a> {
         result.unwrap_or_else(failed)
     }
 
-    fn variant<'v, R>(&self, base: &'v Scene<'v, R>, setting: &Setting) -> Variant<'v, R> {
+    fn variant<'v, R>(&'v self, base: &'v Scene<'v, R>, setting: &Setting) -> Variant<'v, R> {
         let scale = setting.nodes as f64 / self.nodes as f64;
-        Variant { base, scale, force: setting.force, quadrature: setting.quadrature }
+        Variant { base, counts: &self.counts, scale, force: setting.force, quadrature: setting.quadrature }
     }
 
     /// Settings that make a difference: a model without boundary system or with conserved impulse has no Christoffel force.

@@ -21,7 +21,7 @@ const SHIFT: f64 = 1e-7;
 /// … may move the end by this many times as much. Beyond, errors tell about the scene and not about the method.
 const GROWTH: f64 = 1e3;
 /// The reference may take so many times as long as a run.
-const PATIENCE: u32 = 6;
+const PATIENCE: u32 = 20;
 
 /// A horizon shorter than this part of what was wanted shows nothing.
 const SHORTEST: f64 = 1e-4;

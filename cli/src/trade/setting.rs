@@ -2,6 +2,7 @@
 
 use nekton::scalar::Real;
 use nekton::scene::{Body, Description, ForceFormula, Link, Quadrature, Scene, Wall};
+use nekton::status::Place;
 use nekton::{Method, Model};
 
 use crate::scene_file::Integrator;
@@ -72,10 +73,10 @@ pub fn integrator(name: &str, value: f64) -> Option<Integrator> {
 /// of a micrometre would be lost in a tolerance that suits one of a metre.
 pub fn unit<R: Real>(model: &Model<'_, R>) -> f64 {
     let links = (0..model.link_count()).filter_map(|i| model.link(i));
-    links.map(|link| link.perimeter.to_f64() / std::f64::consts::PI).fold(1.0, f64::min)
+    links.map(|l| l.perimeter.to_f64() / std::f64::consts::PI).fold(1.0, f64::min)
 }
 
-/// The core's method, with `unit` of the model.
+/// The core's method; `unit` as the function of that name has it.
 pub fn method<R: Real>(integrator: Integrator, unit: f64) -> Method<R> {
     match integrator {
         Integrator::Rk4 { step } => Method::Rk4 { step: R::lit(step) },
@@ -91,6 +92,8 @@ pub fn method<R: Real>(integrator: Integrator, unit: f64) -> Method<R> {
 pub struct Variant<'a, R> {
     /// The scene.
     pub base: &'a Scene<'a, R>,
+    /// Nodes of every boundary with the scene's own setting.
+    pub counts: &'a [(Place, usize)],
     /// Factor of all node counts.
     pub scale: f64,
     /// Force.
@@ -99,9 +102,17 @@ pub struct Variant<'a, R> {
     pub quadrature: Quadrature,
 }
 
+/// Nodes of every boundary of a model: what `nodes = "auto"` came to is known only then.
+pub fn counts<R: Real>(model: &Model<'_, R>) -> Vec<(Place, usize)> {
+    let links = (0..model.link_count()).filter_map(|i| Some(model.link(i)?.place));
+    let walls = std::iter::once(Place::Tank).chain((0..model.plan().walls).map(Place::Obstacle));
+    links.chain(walls).filter_map(|place| Some((place, model.nodes(place)?))).collect()
+}
+
 impl<R> Variant<'_, R> {
-    fn nodes(&self, nodes: usize) -> usize {
-        scaled(nodes, self.scale)
+    fn nodes(&self, place: Place, given: usize) -> usize {
+        let own = self.counts.iter().find(|(p, _)| *p == place).map_or(given, |(_, nodes)| *nodes);
+        scaled(own, self.scale)
     }
 }
 
@@ -115,13 +126,13 @@ impl<R: Real> Description<R> for Variant<'_, R> {
         Scene { force: self.force, quadrature: self.quadrature, ..*self.base }
     }
     fn tank(&self) -> Option<Wall<'_, R>> {
-        self.base.tank.map(|w| Wall { nodes: self.nodes(w.nodes), ..w })
+        self.base.tank.map(|w| Wall { nodes: self.nodes(Place::Tank, w.nodes), ..w })
     }
     fn obstacle_count(&self) -> usize {
         self.base.obstacles.len()
     }
     fn obstacle(&self, i: usize) -> Option<Wall<'_, R>> {
-        self.base.obstacles.get(i).map(|w| Wall { nodes: self.nodes(w.nodes), ..*w })
+        self.base.obstacles.get(i).map(|w| Wall { nodes: self.nodes(Place::Obstacle(i), w.nodes), ..*w })
     }
     fn body_count(&self) -> usize {
         self.base.bodies.len()
@@ -133,6 +144,6 @@ impl<R: Real> Description<R> for Variant<'_, R> {
         self.base.link_count(b)
     }
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
-        self.base.link(b, l).map(|link| Link { nodes: self.nodes(link.nodes), ..link })
+        self.base.link(b, l).map(|link| Link { nodes: self.nodes(Place::Link(b, l), link.nodes), ..link })
     }
 }

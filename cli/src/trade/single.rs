@@ -24,7 +24,7 @@ pub fn single(scene: &Scene<'_, f64>) -> Scene<'static, f32> {
         }),
         force: scene.force,
         quadrature: scene.quadrature,
-        tolerance: scene.tolerance.map(|t| t as f32),
+        tolerance: scene.tolerance.map(|x| x as f32),
         shortcuts: scene.shortcuts,
     }
 }

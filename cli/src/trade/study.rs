@@ -66,14 +66,22 @@ pub struct Study<'a> {
 impl Study<'_> {
     /// Families of settings: quadrature, force, precision.
     fn families(&self) -> Vec<(Quadrature, ForceFormula, bool)> {
-        let mut all = Vec::new();
-        for single in [false, true] {
-            for quadrature in self.bench.quadratures() {
-                for force in self.bench.forces() {
-                    all.push((*quadrature, *force, single));
-                }
+        let usual = (Quadrature::Graded, ForceFormula::ExactGradient, false);
+        let mut all = vec![usual, (Quadrature::Graded, ForceFormula::ExactGradient, true)];
+        for quadrature in self.bench.quadratures() {
+            for force in self.bench.forces() {
+                all.push((*quadrature, *force, false));
             }
         }
+        // Where everything is far apart, single precision may go without the graded quadrature too.
+        all.extend(self.bench.quadratures().iter().map(|q| (*q, ForceFormula::ExactGradient, true)));
+        let mut seen = Vec::new();
+        all.retain(|f| {
+            !seen.contains(f) && {
+                seen.push(*f);
+                true
+            }
+        });
         if self.quick {
             all.truncate(1);
         }

@@ -105,5 +105,5 @@ pub fn figures(alone: &Path, between: &Path, folder: &Path) -> Outcome {
     write(folder, "figure14.svg", &over_time(title, "ratio", "1", &[line])?)?;
     writeln!(table, "both,cost between obstacles / cost alone,{:.4}", ratio[common - 1])?;
     print!("{table}");
-    write(folder, "fish.csv", &table)
+    write(folder, "swimming.csv", &table)
 }
