@@ -10,12 +10,12 @@
 /* 1 body, 0 joints, 32 nodes, no walls (0 of them, 0 nodes), no circulation, only ellipses, no signals. */
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_MODEL_BYTES(1, 0, 32, 0, 0, 0, 0, 0)];
+    unsigned char bytes[NEKTON_MODEL_BYTES(1, 0, 32, 0, 0, 0, 0, 0, 1)];
 } model_memory;
 /* A lone rigid body needs no boundary system while it moves: 0 nodes. */
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_SIM_BYTES(1, 0, 0, 0, 0, 0, 0)];
+    unsigned char bytes[NEKTON_SIM_BYTES(1, 0, 0, 0, 0, 0, 0, 0, 0)];
 } sim_memory;
 /* For stdout, which would otherwise ask for memory itself. */
 static char output[1024];

@@ -14,11 +14,11 @@ enum { LINKS = 3, NODES = 32 };
 /* 1 body, 2 joints, no walls, no circulation, only ellipses, 1 harmonic term, 1 channel. */
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_MODEL_BYTES(1, LINKS - 1, NODES, 0, 0, 0, 0, 1)];
+    unsigned char bytes[NEKTON_MODEL_BYTES(1, LINKS - 1, NODES, 0, 0, 0, 0, 1, 1)];
 } model_memory;
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_SIM_BYTES(1, LINKS - 1, NODES, 0, 0, 0, 1)];
+    unsigned char bytes[NEKTON_SIM_BYTES(1, LINKS - 1, NODES, 0, 0, 0, 1, 0, 1)];
 } sim_memory;
 static char output[1024];
 

@@ -70,7 +70,7 @@ fn source(name: &str) -> String {
 /// Compiles the header alone.
 fn accepts(compiler: &str, standard: &str, suffix: &str) {
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("header{standard}.{suffix}"));
-    let text = "#include \"nekton.h\"\n#include \"nekton.h\"\nint main(void) { return (int)NEKTON_SIM_BYTES(1, 0, 8, 0, 0, 0, 0) == 0; }\n";
+    let text = "#include \"nekton.h\"\n#include \"nekton.h\"\nint main(void) { return (int)NEKTON_SIM_BYTES(1, 0, 8, 0, 0, 0, 0, 0, 1) == 0; }\n";
     std::fs::write(&file, text).unwrap();
     let mut command = Command::new(compiler);
     command.arg(standard).args(STRICT).arg("-I").arg(root().join("include"));

@@ -27,11 +27,11 @@ static void print(const char *name, const real *x, size_t n) {
 /* Memory for a model of one body with two joints and a simulation of it. */
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_MODEL_BYTES(1, 2, 32, 1, 48, 0, 0, 1)];
+    unsigned char bytes[NEKTON_MODEL_BYTES(1, 2, 32, 1, 48, 0, 0, 1, 2)];
 } model_memory;
 static union {
     uint64_t align;
-    unsigned char bytes[NEKTON_SIM_BYTES(1, 2, 32, 1, 48, 0, 1)];
+    unsigned char bytes[NEKTON_SIM_BYTES(1, 2, 32, 1, 48, 0, 1, 0, 2)];
 } sim_memory[2];
 
 int main(void) {

@@ -6,7 +6,7 @@
 typedef double real;
 
 /* Also usable for static memory. */
-static unsigned char static_memory[NEKTON_MODEL_BYTES(1, 2, 32, 1, 16, 1, 4, 2) + NEKTON_SIM_BYTES(1, 2, 32, 1, 16, 1, 1)];
+static unsigned char static_memory[NEKTON_MODEL_BYTES(1, 2, 32, 1, 16, 1, 4, 2, 1) + NEKTON_SIM_BYTES(1, 2, 32, 1, 16, 1, 1, 4, 1)];
 
 static double worst_model = 1.0, worst_sim = 1.0;
 static long tried = 0;
@@ -99,6 +99,9 @@ static void try_one(size_t bodies, size_t joints, size_t nodes, size_t walls, si
         wall[w].position[1] = 50 + 10 * (real)w;
         wall[w].nodes = wall_nodes;
     }
+    int graded = (int)(tried % 3);
+    def.quadrature = graded ? NEKTON_QUADRATURE_GRADED : NEKTON_QUADRATURE_PLAIN;
+    if (graded == 2) def.repulsion_epsilon = (real)0.01;
     def.bodies = body;
     def.body_count = bodies;
     def.obstacles = wall;
@@ -108,7 +111,7 @@ static void try_one(size_t bodies, size_t joints, size_t nodes, size_t walls, si
     nekton_diag diag;
     nekton_model *model;
     check(nekton_model_req(&def, &req, &diag) == NEKTON_OK, "model_req");
-    size_t bound = NEKTON_MODEL_BYTES(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows);
+    size_t bound = NEKTON_MODEL_BYTES(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded);
     double ratio = (double)bound / (double)req.size;
     if (ratio < 1.0) printf("model: %zu bytes needed, %zu said\n", req.size, bound);
     check(ratio >= 1.0, "NEKTON_MODEL_BYTES is not enough");
@@ -129,7 +132,7 @@ static void try_one(size_t bodies, size_t joints, size_t nodes, size_t walls, si
     check(nekton_sim_req(model, &method, &req, &diag) == NEKTON_OK, "sim_req");
     /* A lone rigid body needs no boundary system. */
     size_t n = bodies == 1 && joints == 0 && walls == 0 ? 0 : nodes;
-    bound = NEKTON_SIM_BYTES(bodies, joints, n, walls, wall_nodes, circulation, channels);
+    bound = NEKTON_SIM_BYTES(bodies, joints, n, walls, wall_nodes, circulation, channels, points, graded);
     ratio = (double)bound / (double)req.size;
     if (ratio < 1.0) printf("sim: %zu bytes needed, %zu said\n", req.size, bound);
     check(ratio >= 1.0, "NEKTON_SIM_BYTES is not enough");

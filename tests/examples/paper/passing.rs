@@ -112,7 +112,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 
 /// Makes the figures and their data.
 pub fn figures(folder: &Path, quick: bool) -> Outcome {
-    let best = if quick { [96, 128] } else { [96, 128] };
+    let best = [96, 128];
     let exact = run(Scheme::Ours, best[1], 1e-13)?;
     let own = errors(&run(Scheme::Ours, best[0], 2e-13)?.states, &exact.states);
     println!("reference: {} nodes; differs from {} nodes by {:.1e}", best[1], best[0], own[0].max(own[1]));
