@@ -9,9 +9,10 @@ fn main() {
     println!("case,gap,nodes,error_mass,error_force,indicator_mass,indicator_force");
     for case in CASES.iter().filter(|c| wanted.is_empty() || wanted.iter().any(|w| c.name.contains(w.as_str()))) {
         let far = case.name.starts_with("tank");
-        for gap in [0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7].into_iter().take(if far { 1 } else { 7 }) {
+        let most = if far { 1 } else { 5 };
+        for gap in [0.1, 1e-2, 1e-3, 1e-4, 1e-5].into_iter().take(most) {
             let shift = if far { 0.0 } else { case.shift(gap) };
-            let (m, f, _) = case.values(shift, 384, Quadrature::Graded);
+            let (m, f, _) = case.values(shift, 320, Quadrature::Graded);
             for nodes in [32, 48, 64, 96, 128, 160, 192] {
                 let (mass, force, r) = case.values(shift, nodes, Quadrature::Graded);
                 let [em, ef] = [error(&mass, &m), error(&force, &f)];
