@@ -1,6 +1,6 @@
 //! Pairs of boundaries at a given gap, and the errors of added mass and force there.
 
-use crate::{at_start, body, link, matrix, vector, wall};
+use crate::{at_start, body, link, wall};
 use nekton::Sim;
 use nekton::scene::{Body, Quadrature, Scene, Shape, Wall};
 
@@ -58,14 +58,21 @@ impl Case {
         shift
     }
 
+    /// [`Case::values`], or what refuses them.
+    pub fn try_values(&self, shift: f64, nodes: usize, quadrature: Quadrature) -> nekton::Result<Values> {
+        self.at(shift, nodes, quadrature, &[], |sim| {
+            let n = crate::size(sim);
+            let (mut mass, mut force) = (vec![0.0; n * n], vec![0.0; n]);
+            sim.added_mass(&mut mass)?;
+            sim.christoffel(&mut force)?;
+            let r = sim.resolution()?;
+            Ok((mass, force, [r.mass, r.force]))
+        })
+    }
+
     /// Added mass, force and indicators.
     pub fn values(&self, shift: f64, nodes: usize, quadrature: Quadrature) -> Values {
-        self.at(shift, nodes, quadrature, &[], |sim| {
-            let mass = matrix(sim, |s, out| s.added_mass(out)).concat();
-            let force = vector(sim, |s, out| s.christoffel(out));
-            let r = sim.resolution().unwrap();
-            (mass, force, [r.mass, r.force])
-        })
+        self.try_values(shift, nodes, quadrature).unwrap_or_else(|error| panic!("not evaluated: {error}"))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What an ingredient of a scene costs, from counts: what is absent adds nothing, not a byte, and what is there adds what theory says.
 
 use nekton::scene::{
-    Body, CirculationModel, Drive, ForceFormula, Harmonic, Link, Repulsion, Scene, Shape, Signal, Wall,
+    Body, CirculationModel, Drive, ForceFormula, Harmonic, Link, Quadrature, Repulsion, Scene, Shape, Signal, Wall,
 };
 use nekton::{Formulation, Model, ModelBuf, ModelRequirement, Plan};
 use nekton_tests::*;
@@ -66,7 +66,7 @@ fn an_absent_ingredient_adds_exactly_zero() {
 }
 
 #[test]
-fn gravity_and_repulsion_add_no_unknown_no_right_hand_side_and_no_byte() {
+fn gravity_and_repulsion_add_no_unknown_and_no_right_hand_side() {
     let links = links(0.0);
     let bodies = pair(&links);
     let base = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
@@ -77,7 +77,15 @@ fn gravity_and_repulsion_add_no_unknown_no_right_hand_side_and_no_byte() {
     let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 0.01 });
     plan.repulsion = true;
     plan.operations += 12.5 * (2.0 * NODES as f64).powi(2);
-    assert_eq!(counts(&Scene { repulsion, ..base }), (plan, need));
+    // Close range takes tables, once; the plain quadrature takes not a byte.
+    let (mut graded, _) = counts(&Scene { repulsion, ..base });
+    assert!(graded.model_bytes > plan.model_bytes);
+    graded.model_bytes = plan.model_bytes;
+    assert_eq!(graded, plan);
+    let base = Scene { quadrature: Quadrature::Plain, ..base };
+    let (mut plain, need) = counts(&base);
+    (plain.repulsion, plain.operations) = (true, plan.operations);
+    assert_eq!(counts(&Scene { repulsion, ..base }), (plain, need));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 /*
  * Memory for static placement, bytes: upper bounds as integer constant expressions, not much above what nekton_model_req and
- * nekton_sim_req tell.
+ * nekton_sim_req tell for the plain quadrature, up to some times that for the graded one on small scenes.
  *
  *   static union { uint64_t align; unsigned char bytes[NEKTON_MODEL_BYTES(1, 2, 32, 0, 0, 0, 0, 2, 0)]; } memory;
  *
@@ -35,7 +35,7 @@
     (NEKTON_P_S((graded) != 0) * \
          ((boundaries) * (6 * NEKTON_P_MOST(nodes, wall_nodes) + 4 + 3 * NEKTON_P_S(points) + NEKTON_P_MOST(points, 32)) + \
           NEKTON_P_S(walls) * (NEKTON_P_RUNGS(wall_nodes) + 150)) + \
-     NEKTON_P_S((graded) == 2) * 4300)
+     NEKTON_P_S((graded) == 2) * 5200)
 /* The same for a simulation: nodes, rungs, ladders, preimages. */
 #define NEKTON_P_SIM_GRADED(boundaries, u, nodes, wall_nodes, points, graded) \
     (NEKTON_P_S((graded) != 0) * \
@@ -53,7 +53,7 @@
 #define NEKTON_P_U(bodies, joints, nodes, walls, wall_nodes) \
     (NEKTON_P_L(bodies, joints) * NEKTON_P_S(nodes) + NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes))
 #define NEKTON_P_KEPT(bodies, joints, walls, channels) \
-    (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 24)
+    (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 40)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
      ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + 2 + NEKTON_P_S(circulation) * (u) * ((u) + 7))

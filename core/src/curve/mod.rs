@@ -23,7 +23,7 @@ pub use ellipse::Ellipse;
 pub use fourier::Fourier;
 pub use polygon::{Polygon, SHARP};
 
-use crate::grading::{Grading, Ladder, write_grading};
+use crate::grading::{Grading, Ladder, write_fitting};
 use crate::scalar::{Complex, Real, cabs, complex, dot};
 use crate::status::Result;
 use crate::workspace::part;
@@ -138,10 +138,11 @@ impl<R: Real> Outline<R> {
         OutlineView { curve: self.kind.curve(store), grading }
     }
 
-    /// Replaces the grading by that of these ladders. Errors: `MemoryTooSmall`.
+    /// Replaces the grading by that of these ladders, as far as there is memory for their rungs. Errors: `MemoryTooSmall`
+    /// if there is none at all.
     pub(crate) fn regrade(&mut self, ladders: impl Iterator<Item = Ladder<R>>, store: &mut [R]) -> Result<()> {
         let graded = store.get_mut(self.kind.len()..).unwrap_or(&mut []);
-        self.rungs = write_grading(ladders, graded)?;
+        (self.rungs, _) = write_fitting(ladders, graded)?;
         Ok(())
     }
 }
