@@ -56,7 +56,8 @@ fn collect(work: &Path, folder: &Path) -> Result<()> {
             summary += &format!("{},{line}\n", if k == 0 { "scene" } else { &name });
         }
     }
-    put("recommended.csv", &summary)
+    // Nothing measured here: what is committed stays.
+    if summary.is_empty() { Ok(()) } else { put("recommended.csv", &summary) }
 }
 
 /// Fills the page from what is in its folder.
