@@ -8,7 +8,7 @@
 
 use crate::curve::{Curve, Outline, OutlineView};
 use crate::grading::Ladder;
-use crate::lu::{Factors, factor};
+use crate::lu::{Factors, Machine, factor};
 use crate::near::preimage::Source;
 use crate::near::{Preimage, pole};
 use crate::scalar::{Complex, Real, complex, dot};
@@ -338,7 +338,7 @@ pub(crate) fn add_pole_term<R: Real>(
     regular: &mut Block<'_, R>,
 ) {
     let factor = sign / R::PI;
-    pole::each_weight(p, table, nodes, |k, w| {
+    pole::each_weight(Machine::here(), p, table, nodes, |k, w| {
         matrix.add(i, k, -factor * w.im);
         if !regular.data.is_empty() {
             regular.add(i, k, factor * w.re);

@@ -163,12 +163,12 @@ pub(crate) fn add_pole_velocity<R: Real>(
     if table.is_empty() {
         return;
     }
-    let (nodes, scale) = (source.nodes, source.sign / R::PI);
+    let (machine, scale) = (Machine::here(), source.sign / R::PI);
     for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
         for p in c.preimages(j, first + i) {
             let h = match fx.get(i).zip(fy.get(i)) {
-                Some((fx, fy)) => pole::slope_products(&p, table, nodes, wx, complex(*fx, *fy), scale, out),
-                None => pole::slope_sum(&p, table, nodes, [wx, wy], scale),
+                Some((fx, fy)) => pole::slope_products(machine, &p, table, wx, complex(*fx, *fy), scale, out),
+                None => pole::slope_sum(machine, &p, table, [wx, wy], scale),
             };
             (*hx, *hy) = (*hx + h.re, *hy + h.im);
         }

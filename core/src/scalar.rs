@@ -259,6 +259,15 @@ pub fn cln_1p<R: Real>(z: Complex<R>) -> Complex<R> {
 
 /// Principal arc tangent, to relative accuracy near 0.
 pub fn catan<R: Real>(z: Complex<R>) -> Complex<R> {
+    let square = z * z;
+    // Below a tenth eight terms of the series reach rounding.
+    if square.re * square.re + square.im * square.im < R::lit(1e-4) {
+        let mut sum = complex(R::lit(1.0 / 15.0), R::zero());
+        for k in [13.0, 11.0, 9.0, 7.0, 5.0, 3.0, 1.0] {
+            sum = complex(R::lit(1.0 / k), R::zero()) - sum * square;
+        }
+        return z * sum;
+    }
     let (x, y) = (z.re, z.im);
     let below = R::one() - y;
     let re = (x + x).atan2((R::one() + y) * below - x * x) * R::HALF;

@@ -8,6 +8,7 @@
 //! exactly for the trigonometric interpolant of the density. Its derivative by z is that of x times dx/dz. The cotangent
 //! of a sum needs no transcendental function per node: (c − τ s)/(s + τ c) with τ = tan(x/2), c + is = e^(imh/2).
 
+use crate::lu::{Machine, Task};
 use crate::near::Preimage;
 use crate::scalar::{Complex, Real, cexp, complex, csin_cos};
 use crate::workspace::part;
@@ -57,7 +58,7 @@ impl<R: Real> Row<R> {
 }
 
 /// cot((x + mh)/2), m = j − k: the table holds the angle −m h/2.
-#[inline]
+#[inline(always)]
 fn cotangent<R: Real>(t: Complex<R>, c: R, s: R) -> Complex<R> {
     let (top, bottom) = (complex(c + t.re * s, t.im * s), complex(t.re * c - s, t.im * c));
     let inverse = R::one() / (bottom.re * bottom.re + bottom.im * bottom.im);
@@ -67,6 +68,7 @@ fn cotangent<R: Real>(t: Complex<R>, c: R, s: R) -> Complex<R> {
 /// Lanes of the loops over nodes, so that they vectorize; the terms alternate in sign.
 const LANES: usize = 8;
 
+#[inline(always)]
 fn signs<R: Real>() -> [R; LANES] {
     let (plus, minus) = (R::one(), -R::one());
     [plus, minus, plus, minus, plus, minus, plus, minus]
@@ -75,23 +77,38 @@ fn signs<R: Real>() -> [R; LANES] {
 /// Calls back with (k, term of W_ik) for the nodes of the source.
 #[inline]
 pub(crate) fn each_weight<R: Real>(
+    machine: Machine,
     pre: &Preimage<R>,
     table: &[R],
     nodes: usize,
-    mut visit: impl FnMut(usize, Complex<R>),
+    visit: impl FnMut(usize, Complex<R>),
 ) {
-    let row = Row::of(pre, nodes);
     let (cos, sin) = turned(table, nodes, pre.node);
-    let f = row.factor;
-    for (first, (cos, sin)) in (0..).step_by(LANES).zip(cos.chunks(LANES).zip(sin.chunks(LANES))) {
-        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-        let out = re.iter_mut().zip(im.iter_mut()).zip(signs());
-        for (((re, im), sign), (c, s)) in out.zip(cos.iter().zip(sin)) {
-            let cot = cotangent(row.tangent, *c, *s);
-            (*re, *im) = ((f.re * cot.re - f.im * cot.im) * sign, (f.re * cot.im + f.im * cot.re) * sign);
-        }
-        for (k, (re, im)) in re.iter().zip(&im).enumerate().take(cos.len()) {
-            visit(first + k, complex(*re, *im));
+    machine.run(Weights { row: Row::of(pre, nodes), cos, sin, visit });
+}
+
+struct Weights<'a, R, F> {
+    row: Row<R>,
+    cos: &'a [R],
+    sin: &'a [R],
+    visit: F,
+}
+
+impl<R: Real, F: FnMut(usize, Complex<R>)> Task for Weights<'_, R, F> {
+    #[inline(always)]
+    fn run(mut self) {
+        let f = self.row.factor;
+        let chunks = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
+        for (first, (cos, sin)) in (0..).step_by(LANES).zip(chunks) {
+            let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+            let out = re.iter_mut().zip(im.iter_mut()).zip(signs());
+            for (((re, im), sign), (c, s)) in out.zip(cos.iter().zip(sin)) {
+                let cot = cotangent(self.row.tangent, *c, *s);
+                (*re, *im) = ((f.re * cot.re - f.im * cot.im) * sign, (f.re * cot.im + f.im * cot.re) * sign);
+            }
+            for (k, (re, im)) in re.iter().zip(&im).enumerate().take(cos.len()) {
+                (self.visit)(first + k, complex(*re, *im));
+            }
         }
     }
 }
@@ -99,12 +116,12 @@ pub(crate) fn each_weight<R: Real>(
 /// Σ_k of the terms of W_ik.
 pub(crate) fn sum_of_weights<R: Real>(pre: &Preimage<R>, table: &[R], nodes: usize) -> Complex<R> {
     let mut sum = Complex::default();
-    each_weight(pre, table, nodes, |_, w| sum += w);
+    each_weight(Machine::here(), pre, table, nodes, |_, w| sum += w);
     sum
 }
 
 /// dW_ik/dz apart from its sign and from the factor: iσ(N/2) cot − (1 + cot²)/2.
-#[inline]
+#[inline(always)]
 fn slope<R: Real>(row: &Row<R>, c: R, s: R) -> Complex<R> {
     let cot = cotangent(row.tangent, c, s);
     complex(
@@ -115,54 +132,93 @@ fn slope<R: Real>(row: &Row<R>, c: R, s: R) -> Complex<R> {
 
 /// Σ_k D_ik w_k of the terms of D_ik = dW_ik/dz for one target, scaled, and Im(f D_ik) added to `out_k`.
 pub(crate) fn slope_products<R: Real>(
+    machine: Machine,
     pre: &Preimage<R>,
     table: &[R],
-    nodes: usize,
     w: &[R],
     f: Complex<R>,
     scale: R,
     out: &mut [R],
 ) -> Complex<R> {
-    let row = Row::of(pre, nodes);
-    let (cos, sin) = turned(table, nodes, pre.node);
+    let (row, (cos, sin)) = (Row::of(pre, w.len()), turned(table, w.len(), pre.node));
     let factor = row.factor * pre.rate * scale;
-    let g = f * factor;
-    let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-    let angles = cos.chunks(LANES).zip(sin.chunks(LANES));
-    for ((cos, sin), (w, out)) in angles.zip(w.chunks(LANES).zip(out.chunks_mut(LANES))) {
-        let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
-        let nodes = cos.iter().zip(sin).zip(w.iter().zip(out));
-        for (((re, im), sign), ((c, s), (w, out))) in sums.zip(nodes) {
-            let d = slope(&row, *c, *s);
-            let signed = *w * sign;
-            *re += d.re * signed;
-            *im += d.im * signed;
-            *out += (g.re * d.im + g.im * d.re) * sign;
+    let mut sum = Complex::default();
+    machine.run(Products { row, cos, sin, w, g: f * factor, out, sum: &mut sum });
+    factor * sum
+}
+
+struct Products<'a, R> {
+    row: Row<R>,
+    cos: &'a [R],
+    sin: &'a [R],
+    w: &'a [R],
+    g: Complex<R>,
+    out: &'a mut [R],
+    sum: &'a mut Complex<R>,
+}
+
+impl<R: Real> Task for Products<'_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+        let g = self.g;
+        let angles = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
+        for ((cos, sin), (w, out)) in angles.zip(self.w.chunks(LANES).zip(self.out.chunks_mut(LANES))) {
+            let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
+            let nodes = cos.iter().zip(sin).zip(w.iter().zip(out));
+            for (((re, im), sign), ((c, s), (w, out))) in sums.zip(nodes) {
+                let d = slope(&self.row, *c, *s);
+                let signed = *w * sign;
+                *re += d.re * signed;
+                *im += d.im * signed;
+                *out += (g.re * d.im + g.im * d.re) * sign;
+            }
         }
+        *self.sum = total(&re, &im);
     }
-    factor * re.iter().zip(&im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im))
+}
+
+fn total<R: Real>(re: &[R], im: &[R]) -> Complex<R> {
+    re.iter().zip(im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im))
 }
 
 /// Σ_k D_ik w_k of the terms for one target and a complex density, scaled.
 pub(crate) fn slope_sum<R: Real>(
+    machine: Machine,
     pre: &Preimage<R>,
     table: &[R],
-    nodes: usize,
     [wx, wy]: [&[R]; 2],
     scale: R,
 ) -> Complex<R> {
-    let row = Row::of(pre, nodes);
-    let (cos, sin) = turned(table, nodes, pre.node);
-    let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-    let angles = cos.chunks(LANES).zip(sin.chunks(LANES));
-    for ((cos, sin), (wx, wy)) in angles.zip(wx.chunks(LANES).zip(wy.chunks(LANES))) {
-        let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
-        for (((re, im), sign), ((c, s), (x, y))) in sums.zip(cos.iter().zip(sin).zip(wx.iter().zip(wy))) {
-            let d = slope(&row, *c, *s);
-            *re += (d.re * *x - d.im * *y) * sign;
-            *im += (d.re * *y + d.im * *x) * sign;
+    let (row, (cos, sin)) = (Row::of(pre, wx.len()), turned(table, wx.len(), pre.node));
+    let factor = row.factor * pre.rate * scale;
+    let mut sum = Complex::default();
+    machine.run(Sum { row, cos, sin, wx, wy, sum: &mut sum });
+    factor * sum
+}
+
+struct Sum<'a, R> {
+    row: Row<R>,
+    cos: &'a [R],
+    sin: &'a [R],
+    wx: &'a [R],
+    wy: &'a [R],
+    sum: &'a mut Complex<R>,
+}
+
+impl<R: Real> Task for Sum<'_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+        let angles = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
+        for ((cos, sin), (wx, wy)) in angles.zip(self.wx.chunks(LANES).zip(self.wy.chunks(LANES))) {
+            let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
+            for (((re, im), sign), ((c, s), (x, y))) in sums.zip(cos.iter().zip(sin).zip(wx.iter().zip(wy))) {
+                let d = slope(&self.row, *c, *s);
+                *re += (d.re * *x - d.im * *y) * sign;
+                *im += (d.re * *y + d.im * *x) * sign;
+            }
         }
+        *self.sum = total(&re, &im);
     }
-    let sum = re.iter().zip(&im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
-    row.factor * pre.rate * scale * sum
 }

@@ -41,9 +41,9 @@ impl<R: Real> Preimage<R> {
     }
 }
 
-/// The pole term falls like e^(−N |Im x|/2): beyond this exponent it is lost in rounding.
+/// The pole term falls like (π/N) e^(−N |Im x|/2): beyond this exponent it is lost in rounding.
 pub(crate) fn reach<R: Real>() -> R {
-    R::TWO - R::EPSILON.ln()
+    -R::EPSILON.ln() - R::lit(3.0)
 }
 
 /// A boundary as the source of a pole.
