@@ -224,3 +224,45 @@ fn bounces_at_tiny_gaps_conserve_energy() {
         assert!(gap <= most && drift <= 1e-10, "gap {gap:e}: {drift:e}");
     }
 }
+
+/// Added mass of a body alone, per unit density.
+fn alone(shape: Shape<'_, f64>, nodes: usize) -> Vec<f64> {
+    let links = [link(shape, 1.0, nodes)];
+    let bodies = [body(&links, [0.0; 3], [0.1, 0.2, 0.3])];
+    let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
+    matrix(&mut at_start(&scene).view(), |s, out| s.added_mass(out)).concat()
+}
+
+#[test]
+fn thin_and_cornered_bodies_alone_need_few_nodes() {
+    for b in [0.1, 0.01] {
+        // Lamb: π b², π a², π (a² − b²)²/8.
+        let (mass, pi) = (alone(Shape::Ellipse { a: 1.0, b }, 32), std::f64::consts::PI);
+        let exact = [pi * b * b, 0.0, 0.0, 0.0, pi, 0.0, 0.0, 0.0, pi * (1.0 - b * b).powi(2) / 8.0];
+        println!("1:{}: {:.1e}", 1.0 / b, error(&mass, &exact));
+        assert!(error(&mass, &exact) <= 1e-13, "{:e}", error(&mass, &exact));
+    }
+    let square = Shape::Rectangle { width: 2.0, height: 2.0, radius: Some(0.02) };
+    let square = error(&alone(square, 128), &alone(square, 256));
+    println!("square: {square:.1e}");
+    assert!(square <= 1e-11, "{square:e}");
+}
+
+#[test]
+fn circulation_about_thin_bodies_is_as_accurate_as_about_fat_ones() {
+    // The tip of one ellipse 1:10 on the flank of another.
+    let evaluate = |nodes: usize| {
+        let flat = Shape::Ellipse { a: 1.0, b: 0.1 };
+        let links = [0.7, -1.2].map(|circulation| [nekton::scene::Link { circulation, ..link(flat, 1.0, nodes) }]);
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let bodies = [
+            body(&links[0], [0.0; 3], [0.1, 0.2, 0.3]),
+            body(&links[1], [0.2, 0.1 + 0.1 + 1.0, quarter], [-0.3, 0.1, 0.2]),
+        ];
+        let mut sim = at_start(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) });
+        vector(&mut sim.view(), |s, out| s.circulation_gradient(out))
+    };
+    let (few, many) = (evaluate(64), evaluate(128));
+    println!("{:.1e}", error(&few, &many));
+    assert!(error(&few, &many) <= 1e-13, "{:e}", error(&few, &many));
+}

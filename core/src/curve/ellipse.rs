@@ -1,7 +1,7 @@
 //! Ellipse about the origin, in the eccentric angle.
 
 use crate::curve::AreaProperties;
-use crate::scalar::{Complex, Real, complex, csin_cos, perp};
+use crate::scalar::{Complex, Real, complex, csin_cos, csqrt, perp};
 
 /// γ(t) = a cos t + i b sin t, with a, b > 0 in any order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +16,16 @@ impl<R: Real> Ellipse<R> {
     fn combine(&self, s: Complex<R>, c: Complex<R>) -> [Complex<R>; 3] {
         let x = c * self.a + perp(s * self.b);
         [x, s * -self.a + perp(c * self.b), -x]
+    }
+
+    /// W = e^(it) of the preimage t of z: the root of (a + b) W/2 + (a − b)/(2W) = z of larger magnitude, which is the one next
+    /// to the outline.
+    pub(crate) fn preimage(&self, z: Complex<R>) -> Complex<R> {
+        let (sum, difference) = (self.a + self.b, self.a - self.b);
+        // √(z² − c²) on the branch next to z.
+        let root = z * csqrt(complex(R::one(), R::zero()) - complex(sum * difference, R::zero()) / (z * z));
+        let w = (z + root) / sum;
+        if w.re.is_finite() && w.im.is_finite() { w } else { csqrt(complex(difference / sum, R::zero())) }
     }
 
     pub(super) fn jet(&self, t: Complex<R>) -> [Complex<R>; 3] {

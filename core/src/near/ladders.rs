@@ -10,7 +10,7 @@ use crate::curve::Curve;
 use crate::grading::Ladder;
 use crate::model::Model;
 use crate::near::{LADDER_LIST, MOST_LADDERS};
-use crate::scalar::{Complex, Real, cabs, complex, csqrt};
+use crate::scalar::{Complex, Real, cabs};
 use crate::workspace::{at, part, part_mut, put};
 
 /// Scale at which a ladder at a closest point has faded out.
@@ -33,13 +33,6 @@ fn foci<R: Real>(d: R, k: R, other: R) -> Option<(R, R)> {
 fn lift<R: Real>(tangent: Complex<R>, second: Complex<R>, x: R) -> R {
     let (p, q) = (tangent.re * tangent.re + tangent.im * tangent.im, second.re * second.re + second.im * second.im);
     (R::TWO * x * x / (p + (p * p + q * x * x).sqrt())).sqrt()
-}
-
-/// |Im t| where an ellipse's continuation reaches z (drawing frame).
-fn ellipse_lift<R: Real>([a, b]: [R; 2], z: Complex<R>) -> R {
-    let one = complex(R::one(), R::zero());
-    let root = z * csqrt(one - complex(a * a - b * b, R::zero()) / (z * z));
-    (cabs(z + root) / (a + b)).ln().abs()
 }
 
 /// A point of a placed boundary as ladders need it.
@@ -132,7 +125,7 @@ pub(crate) fn place_pair<R: Real>(
             let beta = match &curve {
                 Curve::Ellipse(e) => {
                     let x = curve.jet_real(own.t)[0] + place.pose.unturned(own.normal) * delta;
-                    ellipse_lift([e.a, e.b], x)
+                    cabs(e.preimage(x)).ln().abs()
                 }
                 _ => lift(own.tangent, own.second, delta),
             };

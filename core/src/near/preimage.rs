@@ -5,7 +5,7 @@
 
 use crate::boundary::{BoundaryRecord, Nodes};
 use crate::configuration::{Configuration, Poses};
-use crate::curve::{Curve, OutlineView};
+use crate::curve::{Curve, Ellipse, OutlineView};
 use crate::model::Model;
 use crate::near::{NearMut, PREIMAGES, pole};
 use crate::scalar::{Complex, Real, cabs, cln, cln_1p, complex, csin_cos, csqrt, dot};
@@ -62,24 +62,17 @@ impl<R: Real> Source<'_, R> {
     /// Preimages of z (in the source's frame). `own`: z is this node of the source, and its own preimage is left out.
     pub(crate) fn preimages(&self, z: Complex<R>, own: Option<usize>) -> Found<R> {
         match &self.view.curve {
-            Curve::Ellipse(e) => self.on_ellipse([e.a, e.b], z, own),
+            Curve::Ellipse(e) => self.on_ellipse(e, z, own),
             _ => self.by_search(z, own),
         }
     }
 
     /// Both roots of (a + b) W/2 + (a − b)/(2W) = z, W = e^(it), in closed form.
-    fn on_ellipse(&self, [a, b]: [R; 2], z: Complex<R>, own: Option<usize>) -> Found<R> {
-        let (sum, difference) = (a + b, a - b);
+    fn on_ellipse(&self, ellipse: &Ellipse<R>, z: Complex<R>, own: Option<usize>) -> Found<R> {
+        let (sum, difference) = (ellipse.a + ellipse.b, ellipse.a - ellipse.b);
         let first = match own {
             Some(k) => crate::scalar::cis(at(self.nodes.t, k)),
-            None => {
-                let z = z + self.record.origin;
-                let one = complex(R::one(), R::zero());
-                // √(z² − c²) on the branch next to z: the root of larger magnitude.
-                let root = z * csqrt(one - complex(sum * difference, R::zero()) / (z * z));
-                let w = (z + root) / sum;
-                if w.re.is_finite() && w.im.is_finite() { w } else { csqrt(complex(difference / sum, R::zero())) }
-            }
+            None => ellipse.preimage(z + self.record.origin),
         };
         let second = complex(difference / sum, R::zero()) / first;
         let mut found = [None; 2];
@@ -93,7 +86,7 @@ impl<R: Real> Source<'_, R> {
                 continue;
             }
             let j = nearest(self.nodes.t, turn);
-            if let Some(p) = self.ellipse_preimage([a, b], j, z, w)
+            if let Some(p) = self.ellipse_preimage(ellipse, j, z, w)
                 && let Some(slot) = slots.next()
             {
                 *slot = Some(p);
@@ -104,10 +97,10 @@ impl<R: Real> Source<'_, R> {
 
     /// The root w = e^(it*) counted from node j: with W = e^(it_j) (1 + ε), P = (a + b) W_j/2, Q = (a − b)/(2 W_j) and
     /// d = z − Γ_j the equation is P ε² + (P − Q − d) ε = d, solved without cancellation.
-    fn ellipse_preimage(&self, [a, b]: [R; 2], j: usize, z: Complex<R>, w: Complex<R>) -> Option<Preimage<R>> {
+    fn ellipse_preimage(&self, e: &Ellipse<R>, j: usize, z: Complex<R>, w: Complex<R>) -> Option<Preimage<R>> {
         let t_j = at(self.nodes.t, j);
         let node = crate::scalar::cis(t_j);
-        let (p, q) = (node * ((a + b) * R::HALF), node.conj() * ((a - b) * R::HALF));
+        let (p, q) = (node * ((e.a + e.b) * R::HALF), node.conj() * ((e.a - e.b) * R::HALF));
         let d = z - complex(at(self.nodes.x, j), at(self.nodes.y, j));
         let half = (p - q - d) * R::HALF;
         let root = csqrt(half * half + p * d);
@@ -133,10 +126,7 @@ impl<R: Real> Source<'_, R> {
     pub(crate) fn footprint(&self, z: Complex<R>) -> Option<(R, R)> {
         let t = match &self.view.curve {
             Curve::Ellipse(e) => {
-                let (z, one) = (z + self.record.origin, complex(R::one(), R::zero()));
-                let c2 = complex((e.a + e.b) * (e.a - e.b), R::zero());
-                let w = (z + z * csqrt(one - c2 / (z * z))) / (e.a + e.b);
-                let t = cln(w);
+                let t = cln(e.preimage(z + self.record.origin));
                 complex(t.im, t.re.abs())
             }
             _ => {
@@ -146,8 +136,11 @@ impl<R: Real> Source<'_, R> {
                 };
                 let closest = (0..self.nodes.t.len()).map(|k| (size(k), k));
                 let (_, j) = closest.fold((R::MAX, 0), |best, new| if new.0 < best.0 { new } else { best });
-                let u = self.newton(j, z)?;
-                complex(at(self.nodes.t, j) + u.re, u.im.abs())
+                // Where Newton's method does not settle, the distance over the speed is the scale.
+                let (t_j, distance) = (at(self.nodes.t, j), cabs(self.arm(j, z).0));
+                let apart = complex(R::zero(), distance / cabs(self.view.curve.jet_real(t_j)[1]));
+                let u = self.newton(j, z).unwrap_or(apart);
+                complex(t_j + u.re, u.im.abs())
             }
         };
         let near = self.view.grading.plain() * t.im * R::count(self.nodes.t.len()) < reach();
