@@ -9,7 +9,7 @@
 use crate::curve::{Curve, Outline, OutlineView};
 use crate::grading::Ladder;
 use crate::lu::{Factors, Machine, factor};
-use crate::near::preimage::Source;
+use crate::near::preimage::{Source, Targets};
 use crate::near::{Preimage, pole};
 use crate::scalar::{Complex, Real, complex, dot};
 use crate::se2::Pose;
@@ -356,11 +356,11 @@ pub(crate) fn add_flank_terms<R: Real>(
     if source.table.is_empty() {
         return;
     }
-    for (i, z) in source.nodes.points().enumerate() {
-        for p in source.preimages(z, Some(i)).iter().flatten() {
-            add_pole_term(p, source.table, source.nodes.x.len(), sign, i, matrix, regular);
-        }
-    }
+    let (turn, shift) = (complex(R::one(), R::zero()), Complex::default());
+    let targets = Targets { nodes: source.nodes, turn, shift, own: true };
+    source.each_preimage(&targets, |i, p| {
+        add_pole_term(&p, source.table, source.nodes.x.len(), sign, i, matrix, regular);
+    });
 }
 
 /// Fills χ₃ at the nodes: the function harmonic inside the outline with the normal derivative of the rotation about the

@@ -28,6 +28,12 @@ pub(crate) fn put_pose<R: Real>(poses: &mut [R], boundary: usize, pose: &Pose<R>
     copy(part_mut(poses, 4 * boundary, 4), &values);
 }
 
+/// Turn and shift from one boundary's frame to another's.
+#[inline]
+pub(crate) fn relative<R: Real>(pose: Pose<R>, source: Pose<R>) -> (Complex<R>, Complex<R>) {
+    (source.unturned(pose.turn), source.unturned(pose.origin - source.origin))
+}
+
 /// Nodes of one boundary in another's frame: z = conj(turn_j)(r_i − r_j + turn_i X). Differences of origins are
 /// taken first, so a scene far from the world's origin loses no digits.
 #[inline]
@@ -36,8 +42,7 @@ pub(crate) fn targets<'a, R: Real>(
     pose: Pose<R>,
     source: Pose<R>,
 ) -> impl Iterator<Item = Complex<R>> + 'a {
-    let turn = source.unturned(pose.turn);
-    let shift = source.unturned(pose.origin - source.origin);
+    let (turn, shift) = relative(pose, source);
     nodes.points().map(move |x| shift + turn * x)
 }
 

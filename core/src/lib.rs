@@ -52,6 +52,7 @@ pub(crate) mod contact;
 pub mod curve;
 pub mod diagnostics;
 pub(crate) mod dynamics;
+mod elementary;
 pub(crate) mod forces;
 pub mod grading;
 pub mod indicators;

@@ -6,10 +6,11 @@
 //! blocks between different boundaries of which one moves are computed: one division per pair of nodes.
 
 use crate::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_term, fill_self_block};
-use crate::configuration::{Configuration, fill_targets, targets};
+use crate::configuration::{Configuration, fill_targets, relative, targets};
 use crate::lu::{Machine, Task};
 use crate::model::ModelHead;
 use crate::near::pole;
+use crate::near::preimage::Targets;
 use crate::scalar::{Complex, Real, complex};
 use crate::workspace::{copy, part, part_mut, put};
 
@@ -51,11 +52,10 @@ pub(crate) fn fill_walls<R: Real>(
             if source.table.is_empty() {
                 continue;
             }
-            for (i, z) in targets(&points, target.pose, b.pose).enumerate() {
-                for p in source.preimages(z, None).iter().flatten() {
-                    add_pole_term(p, source.table, b.nodes, b.sign, i, &mut a, &mut g);
-                }
-            }
+            let (turn, shift) = relative(target.pose, b.pose);
+            source.each_preimage(&Targets { nodes: points, turn, shift, own: false }, |i, p| {
+                add_pole_term(&p, source.table, b.nodes, b.sign, i, &mut a, &mut g);
+            });
         }
     }
 }

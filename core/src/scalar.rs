@@ -20,6 +20,7 @@ mod sealed {
 pub trait Real:
     sealed::Sealed
     + crate::lu::Vectors
+    + crate::elementary::Bits
     + Copy
     + Default
     + PartialOrd

@@ -172,8 +172,13 @@ pub struct OutlineView<'a, R> {
 impl<R: Real> OutlineView<'_, R> {
     /// The point at parameter t with its derivatives in s: dx/ds = γ′/s′, d²x/ds² = γ″/s′² − γ′ s″/s′³.
     pub fn node_at(&self, t: R) -> Node<R> {
-        let [x, first, second] = self.curve.jet_real(t);
         let [_, slope, bend] = self.grading.jet(t);
+        self.node_of([t, slope, bend])
+    }
+
+    /// The same from t, ds/dt and d²s/dt².
+    fn node_of(&self, [t, slope, bend]: [R; 3]) -> Node<R> {
+        let [x, first, second] = self.curve.jet_real(t);
         let rate = R::one() / slope;
         Node { t, x, dx: first * rate, ddx: (second - first * (bend * rate)) * (rate * rate) }
     }
@@ -184,18 +189,9 @@ impl<R: Real> OutlineView<'_, R> {
         Ok(self.node_at(self.grading.node(k, n)?))
     }
 
-    /// Calls `visit` with `n` nodes in turn, each search started at the node before.
+    /// Calls `visit` with `n` nodes in turn.
     pub(crate) fn walk(&self, n: usize, mut visit: impl FnMut(Node<R>)) -> Result<()> {
-        let step = R::TAU / R::count(n);
-        let mut t = R::zero();
-        for k in 0..n {
-            let s = step * R::count(k);
-            if k > 0 {
-                t = self.grading.inverse(s, t + step / self.grading.jet(t)[1])?;
-            }
-            visit(self.node_at(t));
-        }
-        Ok(())
+        self.grading.walk(n, |jet| visit(self.node_of(jet)))
     }
 
     /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule in s, exact to

@@ -4,10 +4,12 @@
 //!
 //! All of it lives in a simulation's memory, in four buffers; a scene that is plain, or has one boundary, has none.
 
+mod ellipse;
 pub(crate) mod ladders;
 pub(crate) mod pole;
 pub(crate) mod preimage;
 pub(crate) mod regrade;
+mod search;
 
 use crate::boundary::{BoundaryRecord, Nodes};
 use crate::configuration::Poses;

@@ -10,7 +10,7 @@
 
 use crate::lu::{Machine, Task};
 use crate::near::Preimage;
-use crate::scalar::{Complex, Real, cexp, complex, csin_cos};
+use crate::scalar::{Complex, Real, complex};
 use crate::workspace::part;
 
 /// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
@@ -45,15 +45,9 @@ struct Row<R> {
 }
 
 impl<R: Real> Row<R> {
+    #[inline(always)]
     fn of(pre: &Preimage<R>, nodes: usize) -> Self {
-        let half = R::count(nodes) * R::HALF;
-        let half = if pre.x.im < R::zero() { -half } else { half };
-        let (s, c) = csin_cos(pre.x * R::HALF);
-        // e^(iσNx/2)
-        let decay = cexp(complex(-pre.x.im, pre.x.re) * half);
-        let scale = R::PI / R::count(nodes.max(1));
-        let scale = if pre.node.is_multiple_of(2) { scale } else { -scale };
-        Row { tangent: s / c, factor: decay * scale, half }
+        Row { tangent: pre.tangent, factor: pre.factor, half: pre.sign * R::count(nodes) * R::HALF }
     }
 }
 

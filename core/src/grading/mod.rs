@@ -8,12 +8,16 @@
 //! an increasing function that is analytic in |Im t| < min b, so that the trapezoid rule in s keeps its spectral
 //! accuracy. Corners and bends bring permanent ladders; a ladder at a contact is one more entry of the list.
 
-use crate::scalar::{Complex, Real, catan, complex};
+use crate::scalar::Real;
 use crate::status::{Error, Result, Status};
 use crate::workspace::{at, part, put};
 
-/// Reals of a rung: place, scale b, weight, e^(−b/2), sinh(b/2), sinh(b)/2.
-const RUNG: usize = 6;
+mod lanes;
+
+pub(crate) use lanes::{LANES, Offset};
+
+/// Reals of a rung: place p, sin(p/2), weight, e^(−b/2), sinh(b/2), sinh(b)/2, cos(p/2), of the scale b.
+pub(crate) const RUNG: usize = 7;
 /// Reals before the rungs: weight of the plain parameter, value of the map at t = 0.
 const HEAD: usize = 2;
 /// Full weight of a rung.
@@ -79,7 +83,7 @@ pub(crate) fn write_fitting<R: Real>(
     let (mut count, mut all) = (0, true);
     for ladder in ladders {
         for (b, weight) in ladder.rungs() {
-            let Some([t, scale, _, raw, log, _]) = free.next() else {
+            let Some([t, scale, _, raw, log, ..]) = free.next() else {
                 all = false;
                 break;
             };
@@ -90,12 +94,12 @@ pub(crate) fn write_fitting<R: Real>(
     let three = R::lit(3.0);
     let mut total = R::one();
     for i in 0..count {
-        let Some(&[t, b, _, raw, log, _]) = body.chunks_exact(RUNG).nth(i) else {
+        let Some(&[t, b, _, raw, log, ..]) = body.chunks_exact(RUNG).nth(i) else {
             continue;
         };
         let mut crowd = R::one();
         for (j, other) in body.chunks_exact(RUNG).take(count).enumerate() {
-            let &[t2, b2, _, raw2, log2, _] = other else {
+            let &[t2, b2, _, raw2, log2, ..] = other else {
                 continue;
             };
             let near = R::one() - (log - log2).abs() / three.ln();
@@ -108,10 +112,11 @@ pub(crate) fn write_fitting<R: Real>(
         put(body, i * RUNG + 2, raw / crowd);
     }
     for rung in body.chunks_exact_mut(RUNG).take(count) {
-        if let [_, b, weight, decay, sh, half_sinh] = rung {
+        if let [t, b, weight, decay, sh, half_sinh, cos] = rung {
             let half = *b * R::HALF;
             *weight /= total;
             (*decay, *sh, *half_sinh) = ((-half).exp(), half.sinh(), half.sinh() * half.cosh());
+            (*b, *cos) = (*t * R::HALF).sin_cos();
         }
     }
     if let [plain, origin] = head {
@@ -160,7 +165,7 @@ impl<'a, R: Real> Grading<'a, R> {
     /// s, s′, s″ at a real parameter. Cost: one sine and one arc tangent per rung.
     pub fn jet(&self, t: R) -> [R; 3] {
         let mut sum = [self.plain * t, self.plain, R::zero()];
-        for [place, _, weight, decay, sh, half_sinh] in self.each() {
+        for [place, _, weight, decay, sh, half_sinh, _] in self.each() {
             let v = t - place;
             let (s, c) = (v * R::HALF).sin_cos();
             let m = sh * sh + s * s;
@@ -170,23 +175,6 @@ impl<'a, R: Real> Grading<'a, R> {
             sum[2] -= slope * s * c / m;
         }
         sum[0] -= self.origin;
-        sum
-    }
-
-    /// s(t + u) − s(t) to relative accuracy in the complex offset u, and s′(t + u), from sine and cosine of u/2. |Im u| below
-    /// the smallest rung's scale, and no rung crossed by more than half its turn: u spans a few nodes. Cost per rung: a sine, an arc tangent and a logarithm.
-    ///
-    /// S(v; b) = 2 atan(coth(b/2) tan(v/2)), so a difference is one arc tangent of a quotient without cancellation.
-    pub fn difference(&self, t: R, u: Complex<R>, [sin, cos]: [Complex<R>; 2]) -> [Complex<R>; 2] {
-        let mut sum = [u * self.plain, complex(self.plain, R::zero())];
-        for [place, _, weight, _, sh, half_sinh] in self.each() {
-            let (s, c) = ((t - place) * R::HALF).sin_cos();
-            let turned = cos * s + sin * c;
-            let square = sh * sh;
-            let quotient = sin * half_sinh / (cos * square + turned * s);
-            sum[0] += catan(quotient) * (weight * R::TWO);
-            sum[1] += complex(weight * half_sinh, R::zero()) / (turned * turned + square);
-        }
         sum
     }
 
@@ -247,7 +235,7 @@ impl<'a, R: Real> Grading<'a, R> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::scalar::{cabs, cis, csin_cos};
+    use crate::scalar::{Complex, cabs, cis, complex, csin_cos};
     use std::vec;
     use std::vec::Vec;
 
@@ -271,8 +259,9 @@ mod tests {
 
     /// Difference and slope.
     fn jump(grading: &Grading<'_, f64>, t: f64, u: Complex<f64>) -> [Complex<f64>; 2] {
-        let (s, c) = csin_cos(u * 0.5);
-        grading.difference(t, u, [s, c])
+        let ((s, c), lanes) = (csin_cos(u * 0.5), |z: Complex<f64>| [[z.re], [z.im]]);
+        let of = grading.difference(&Offset { t: [t], u: lanes(u), sin: lanes(s), cos: lanes(c) });
+        of.map(|[[re], [im]]| complex(re, im))
     }
 
     #[test]
