@@ -338,12 +338,12 @@ pub(crate) fn add_pole_term<R: Real>(
     regular: &mut Block<'_, R>,
 ) {
     let factor = sign / R::PI;
-    pole::each_weight(Machine::here(), p, table, nodes, |k, w| {
-        matrix.add(i, k, -factor * w.im);
-        if !regular.data.is_empty() {
-            regular.add(i, k, factor * w.re);
-        }
-    });
+    let (at, from) = (matrix.at + i, regular.at + i);
+    let out = [
+        pole::RowOf { data: regular.data.get_mut(from..).unwrap_or(&mut []), stride: regular.ld, scale: factor },
+        pole::RowOf { data: matrix.data.get_mut(at..).unwrap_or(&mut []), stride: matrix.ld, scale: -factor },
+    ];
+    pole::add_weights(Machine::here(), p, table, nodes, out);
 }
 
 /// Adds the pole terms of the opposite flank to a boundary's block with itself.

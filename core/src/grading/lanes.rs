@@ -134,7 +134,7 @@ impl<R: Real> Grading<'_, R> {
 /// sin(v/2), which `far` is but for an absolute error: near a rung the relative one counts.
 #[inline(always)]
 fn half_sine<R: Real>(v: R, far: R) -> R {
-    let turns = nearest(v / R::TAU);
+    let turns = nearest(v * R::lit(0.5 * core::f64::consts::FRAC_1_PI));
     let [a, b, c] = R::HALF_PI;
     let rest = R::TWO * turns;
     let half = ((v * R::HALF - rest * a) - rest * b) - rest * c;

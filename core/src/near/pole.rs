@@ -7,11 +7,12 @@
 //!
 //! exactly for the trigonometric interpolant of the density. Its derivative by z is that of x times dx/dz. The cotangent
 //! of a sum needs no transcendental function per node: (c − τ s)/(s + τ c) with τ = tan(x/2), c + is = e^(imh/2).
+#![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::lu::{Machine, Task};
 use crate::near::Preimage;
 use crate::scalar::{Complex, Real, complex};
-use crate::workspace::part;
+use crate::workspace::{copy, part};
 
 /// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
 pub(crate) fn table_len(nodes: usize) -> Option<usize> {
@@ -38,6 +39,7 @@ fn turned<R: Real>(table: &[R], nodes: usize, j: usize) -> (&[R], &[R]) {
 }
 
 /// What a row of pole terms has in common: τ, the factor (π/N) (−1)^j e^(iσNx/2), σN/2.
+#[derive(Clone, Copy)]
 struct Row<R> {
     tangent: Complex<R>,
     factor: Complex<R>,
@@ -51,57 +53,75 @@ impl<R: Real> Row<R> {
     }
 }
 
-/// cot((x + mh)/2), m = j − k: the table holds the angle −m h/2.
+/// Nodes that are treated together. The terms alternate in sign.
+const LANES: usize = 16;
+
+/// The elements from `from` on; `fill` where there are no more.
 #[inline(always)]
-fn cotangent<R: Real>(t: Complex<R>, c: R, s: R) -> Complex<R> {
-    let (top, bottom) = (complex(c + t.re * s, t.im * s), complex(t.re * c - s, t.im * c));
-    let inverse = R::one() / (bottom.re * bottom.re + bottom.im * bottom.im);
-    complex((top.re * bottom.re + top.im * bottom.im) * inverse, (top.im * bottom.re - top.re * bottom.im) * inverse)
+fn load<R: Real>(data: &[R], from: usize, fill: R) -> [R; LANES] {
+    let rest = data.get(from..).unwrap_or(&[]);
+    rest.first_chunk().copied().unwrap_or_else(|| {
+        let mut lanes = [fill; LANES];
+        copy(&mut lanes, rest);
+        lanes
+    })
 }
 
-/// Lanes of the loops over nodes, so that they vectorize; the terms alternate in sign.
-const LANES: usize = 8;
-
+/// cot((x + mh)/2), m = j − k, at the nodes from `first` on: the table holds the angle −m h/2. (c − τ s)(τ c + s)* has the
+/// imaginary part −Im τ.
 #[inline(always)]
-fn signs<R: Real>() -> [R; LANES] {
-    let (plus, minus) = (R::one(), -R::one());
-    [plus, minus, plus, minus, plus, minus, plus, minus]
+fn cotangents<R: Real>(t: Complex<R>, cos: &[R], sin: &[R], first: usize) -> [[R; LANES]; 2] {
+    let (c, s) = (load(cos, first, R::one()), load(sin, first, R::one()));
+    let (mut re, mut im) = (c, c);
+    for i in 0..LANES {
+        let (x, y) = (t.re * c[i] - s[i], t.im * c[i]);
+        let inverse = R::one() / (x * x + y * y);
+        re[i] = ((c[i] + t.re * s[i]) * x + t.im * s[i] * y) * inverse;
+        im[i] = -t.im * inverse;
+    }
+    [re, im]
 }
 
-/// Calls back with (k, term of W_ik) for the nodes of the source.
+/// Where a row of terms goes, each times a real factor: every `stride`-th element.
+pub(crate) struct RowOf<'a, R> {
+    pub data: &'a mut [R],
+    pub stride: usize,
+    pub scale: R,
+}
+
+/// Adds the real and the imaginary parts of a row of terms of W_ik, one for every node of the source; nothing to empty memory.
 #[inline]
-pub(crate) fn each_weight<R: Real>(
-    machine: Machine,
-    pre: &Preimage<R>,
-    table: &[R],
-    nodes: usize,
-    visit: impl FnMut(usize, Complex<R>),
-) {
+pub(crate) fn add_weights<R: Real>(machine: Machine, pre: &Preimage<R>, table: &[R], nodes: usize, [re, im]: [RowOf<'_, R>; 2]) {
     let (cos, sin) = turned(table, nodes, pre.node);
-    machine.run(Weights { row: Row::of(pre, nodes), cos, sin, visit });
+    let row = Row::of(pre, nodes);
+    machine.run(Weights { row, cos, sin, out: im, turn: complex(R::zero(), R::one()) });
+    if !re.data.is_empty() {
+        machine.run(Weights { row, cos, sin, out: re, turn: complex(R::one(), R::zero()) });
+    }
 }
 
-struct Weights<'a, R, F> {
+/// Adds Re(conj(turn) W_ik).
+struct Weights<'a, R> {
     row: Row<R>,
     cos: &'a [R],
     sin: &'a [R],
-    visit: F,
+    out: RowOf<'a, R>,
+    turn: Complex<R>,
 }
 
-impl<R: Real, F: FnMut(usize, Complex<R>)> Task for Weights<'_, R, F> {
+impl<R: Real> Task for Weights<'_, R> {
     #[inline(always)]
-    fn run(mut self) {
-        let f = self.row.factor;
-        let chunks = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
-        for (first, (cos, sin)) in (0..).step_by(LANES).zip(chunks) {
-            let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-            let out = re.iter_mut().zip(im.iter_mut()).zip(signs());
-            for (((re, im), sign), (c, s)) in out.zip(cos.iter().zip(sin)) {
-                let cot = cotangent(self.row.tangent, *c, *s);
-                (*re, *im) = ((f.re * cot.re - f.im * cot.im) * sign, (f.re * cot.im + f.im * cot.re) * sign);
+    fn run(self) {
+        let f = self.row.factor * self.turn.conj() * self.out.scale;
+        let mut entries = self.out.data.iter_mut().step_by(self.out.stride.max(1));
+        for first in (0..self.cos.len()).step_by(LANES) {
+            let [mut re, im] = cotangents(self.row.tangent, self.cos, self.sin, first);
+            for i in 0..LANES {
+                re[i] = (f.re * re[i] - f.im * im[i]) * sign::<R>(i);
             }
-            for (k, (re, im)) in re.iter().zip(&im).enumerate().take(cos.len()) {
-                (self.visit)(first + k, complex(*re, *im));
+            let count = LANES.min(self.cos.len() - first);
+            for (w, entry) in re.iter().zip(entries.by_ref().take(count)) {
+                *entry += *w;
             }
         }
     }
@@ -109,19 +129,33 @@ impl<R: Real, F: FnMut(usize, Complex<R>)> Task for Weights<'_, R, F> {
 
 /// Σ_k of the terms of W_ik.
 pub(crate) fn sum_of_weights<R: Real>(pre: &Preimage<R>, table: &[R], nodes: usize) -> Complex<R> {
-    let mut sum = Complex::default();
-    each_weight(Machine::here(), pre, table, nodes, |_, w| sum += w);
-    sum
+    let (mut re, mut im) = (R::zero(), R::zero());
+    let (cos, sin) = turned(table, nodes, pre.node);
+    for first in (0..cos.len()).step_by(LANES) {
+        let cot = cotangents(pre.tangent, cos, sin, first);
+        for i in 0..LANES.min(cos.len() - first) {
+            re += cot[0][i] * sign(i);
+            im += cot[1][i] * sign(i);
+        }
+    }
+    pre.factor * complex(re, im)
 }
 
-/// dW_ik/dz apart from its sign and from the factor: iσ(N/2) cot − (1 + cot²)/2.
 #[inline(always)]
-fn slope<R: Real>(row: &Row<R>, c: R, s: R) -> Complex<R> {
-    let cot = cotangent(row.tangent, c, s);
-    complex(
-        -row.half * cot.im - (R::one() + cot.re * cot.re - cot.im * cot.im) * R::HALF,
-        row.half * cot.re - cot.re * cot.im,
-    )
+fn sign<R: Real>(i: usize) -> R {
+    if i.is_multiple_of(2) { R::one() } else { -R::one() }
+}
+
+/// dW_ik/dz at the nodes from `first` on, apart from the factor: iσ(N/2) cot − (1 + cot²)/2, with the alternating sign.
+#[inline(always)]
+fn slopes<R: Real>(row: &Row<R>, cos: &[R], sin: &[R], first: usize) -> [[R; LANES]; 2] {
+    let [mut re, mut im] = cotangents(row.tangent, cos, sin, first);
+    for i in 0..LANES {
+        let (sign, x, y) = (sign::<R>(i), re[i], im[i]);
+        re[i] = (-row.half * y - (R::one() + x * x - y * y) * R::HALF) * sign;
+        im[i] = (row.half * x - x * y) * sign;
+    }
+    [re, im]
 }
 
 /// Σ_k D_ik w_k of the terms of D_ik = dW_ik/dz for one target, scaled, and Im(f D_ik) added to `out_k`.
@@ -154,25 +188,27 @@ struct Products<'a, R> {
 impl<R: Real> Task for Products<'_, R> {
     #[inline(always)]
     fn run(self) {
-        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+        let mut sums = [[R::zero(); LANES]; 2];
         let g = self.g;
-        let angles = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
-        for ((cos, sin), (w, out)) in angles.zip(self.w.chunks(LANES).zip(self.out.chunks_mut(LANES))) {
-            let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
-            let nodes = cos.iter().zip(sin).zip(w.iter().zip(out));
-            for (((re, im), sign), ((c, s), (w, out))) in sums.zip(nodes) {
-                let d = slope(&self.row, *c, *s);
-                let signed = *w * sign;
-                *re += d.re * signed;
-                *im += d.im * signed;
-                *out += (g.re * d.im + g.im * d.re) * sign;
+        for (block, out) in self.out.chunks_mut(LANES).enumerate() {
+            let first = block * LANES;
+            let [re, im] = slopes(&self.row, self.cos, self.sin, first);
+            let (w, mut sum) = (load(self.w, first, R::zero()), load(out, 0, R::zero()));
+            for i in 0..LANES {
+                sums[0][i] += re[i] * w[i];
+                sums[1][i] += im[i] * w[i];
+                sum[i] += g.re * im[i] + g.im * re[i];
+            }
+            match out.first_chunk_mut() {
+                Some(out) => *out = sum,
+                None => copy(out, &sum),
             }
         }
-        *self.sum = total(&re, &im);
+        *self.sum = total(&sums);
     }
 }
 
-fn total<R: Real>(re: &[R], im: &[R]) -> Complex<R> {
+fn total<R: Real>([re, im]: &[[R; LANES]; 2]) -> Complex<R> {
     re.iter().zip(im).fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im))
 }
 
@@ -203,16 +239,15 @@ struct Sum<'a, R> {
 impl<R: Real> Task for Sum<'_, R> {
     #[inline(always)]
     fn run(self) {
-        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
-        let angles = self.cos.chunks(LANES).zip(self.sin.chunks(LANES));
-        for ((cos, sin), (wx, wy)) in angles.zip(self.wx.chunks(LANES).zip(self.wy.chunks(LANES))) {
-            let sums = re.iter_mut().zip(im.iter_mut()).zip(signs());
-            for (((re, im), sign), ((c, s), (x, y))) in sums.zip(cos.iter().zip(sin).zip(wx.iter().zip(wy))) {
-                let d = slope(&self.row, *c, *s);
-                *re += (d.re * *x - d.im * *y) * sign;
-                *im += (d.re * *y + d.im * *x) * sign;
+        let mut sums = [[R::zero(); LANES]; 2];
+        for first in (0..self.cos.len()).step_by(LANES) {
+            let [re, im] = slopes(&self.row, self.cos, self.sin, first);
+            let (x, y) = (load(self.wx, first, R::zero()), load(self.wy, first, R::zero()));
+            for i in 0..LANES {
+                sums[0][i] += re[i] * x[i] - im[i] * y[i];
+                sums[1][i] += re[i] * y[i] + im[i] * x[i];
             }
         }
-        *self.sum = total(&re, &im);
+        *self.sum = total(&sums);
     }
 }
