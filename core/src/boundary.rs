@@ -286,11 +286,6 @@ impl<R: Real> Block<'_, R> {
     pub(crate) fn column(&mut self, k: usize, n: usize) -> &mut [R] {
         part_mut(self.data, self.at + k * self.ld, n)
     }
-    /// Adds to one entry.
-    #[inline]
-    pub(crate) fn add(&mut self, i: usize, k: usize, value: R) {
-        crate::workspace::add(self.data, self.at + k * self.ld + i, value);
-    }
 }
 
 /// Fills the block of A = I − Im G of a boundary with itself by the plain rule, with `completion` in every entry, and of
