@@ -54,11 +54,11 @@ impl<R: Real> Row<R> {
 }
 
 /// Nodes that are treated together. The terms alternate in sign.
-const LANES: usize = 16;
+pub(super) const LANES: usize = 16;
 
 /// The elements from `from` on; `fill` where there are no more.
 #[inline(always)]
-fn load<R: Real>(data: &[R], from: usize, fill: R) -> [R; LANES] {
+pub(super) fn load<R: Real>(data: &[R], from: usize, fill: R) -> [R; LANES] {
     let rest = data.get(from..).unwrap_or(&[]);
     rest.first_chunk().copied().unwrap_or_else(|| {
         let mut lanes = [fill; LANES];

@@ -111,16 +111,11 @@ impl<R: Real, const L: usize> Completed<R, L> {
 
 impl<R: Real> Source<'_, R> {
     /// Calls `visit` with (row, preimage) for every preimage of the targets that needs a pole term, at most two to a row.
-    pub(crate) fn each_preimage(&self, targets: &Targets<'_, R>, mut visit: impl FnMut(usize, Preimage<R>)) {
+    pub(crate) fn each_preimage(&self, targets: &Targets<'_, R>, visit: impl FnMut(usize, Preimage<R>)) {
         if let Curve::Ellipse(e) = &self.view.curve {
             return self.on_ellipse(*e, targets, visit);
         }
-        for (k, x) in targets.nodes.points().enumerate() {
-            let z = if targets.own { x } else { targets.shift + targets.turn * x };
-            for p in self.by_search(z, targets.own.then_some(k)).into_iter().flatten() {
-                visit(k, p);
-            }
-        }
+        self.search(targets, visit);
     }
 
     /// Real part and magnitude of the imaginary part of the preimage of z next to the boundary; `None` where it is too far to

@@ -1,20 +1,51 @@
 //! Preimages on a curve without closed form: Newton's method, and a choice among its roots by a sum that is known.
+#![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::grading::Offset;
-use crate::near::pole;
-use crate::near::preimage::{Preimage, Roots, Source, wrapped};
+use crate::lu::{Machine, Task};
+use crate::near::pole::{self, LANES, load};
+use crate::near::preimage::{Preimage, Roots, Source, Targets, wrapped};
 use crate::scalar::{Complex, Real, cabs, complex, csin_cos, dot};
 use crate::workspace::at;
 
 /// Up to two preimages.
 type Found<R> = [Option<Preimage<R>>; 2];
 
+/// Searches for the preimages of all targets.
+struct Search<'a, 'b, R, F> {
+    source: &'b Source<'a, R>,
+    targets: &'b Targets<'b, R>,
+    visit: F,
+}
+
+impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for Search<'_, '_, R, F> {
+    #[inline(always)]
+    fn run(mut self) {
+        let targets = self.targets;
+        for (k, x) in targets.nodes.points().enumerate() {
+            let z = if targets.own { x } else { targets.shift + targets.turn * x };
+            for p in self.source.by_search(z, targets.own.then_some(k)).into_iter().flatten() {
+                (self.visit)(k, p);
+            }
+        }
+    }
+}
+
 impl<R: Real> Source<'_, R> {
+    /// Calls `visit` with (row, preimage), in the order of the rows.
+    pub(super) fn search(&self, targets: &Targets<'_, R>, visit: impl FnMut(usize, Preimage<R>)) {
+        Machine::here().run(Search { source: self, targets, visit });
+    }
+
     /// Newton's method from the nodes that are close relative to their spacing, and the choice among the roots found by the
     /// known sum of the weights.
-    pub(super) fn by_search(&self, z: Complex<R>, own: Option<usize>) -> Found<R> {
+    #[inline(always)]
+    fn by_search(&self, z: Complex<R>, own: Option<usize>) -> Found<R> {
         let n = self.nodes.t.len();
         let h = self.nodes.step;
+        if self.farther_than_seven_spacings(z) {
+            return [None; 2];
+        }
         // Squared distance in units of the spacing, and its two lowest local minima.
         let distance = |k: usize| {
             let (d, dg) = self.arm(k, z);
@@ -59,6 +90,49 @@ impl<R: Real> Source<'_, R> {
         if count > 0 { self.best_subset(z, own, found) } else { found }
     }
 
+    /// Whether no node is closer to z than seven times its distance from the next.
+    #[inline(always)]
+    fn farther_than_seven_spacings(&self, z: Complex<R>) -> bool {
+        let limit = R::lit(49.0) * self.nodes.step * self.nodes.step;
+        let mut near = false;
+        for first in (0..self.nodes.x.len()).step_by(LANES) {
+            let [x, y, dx, dy] = self.columns(first);
+            let mut most = -R::MAX;
+            for i in 0..LANES {
+                let (x, y) = (x[i] - z.re, y[i] - z.im);
+                let inside = limit * (dx[i] * dx[i] + dy[i] * dy[i]) - (x * x + y * y);
+                most = if inside > most { inside } else { most };
+            }
+            near |= most > R::zero();
+        }
+        !near
+    }
+
+    /// Σ_k h Γ'_k/(Γ_k − z) over the nodes other than z.
+    #[inline(always)]
+    fn plain_sum(&self, z: Complex<R>) -> Complex<R> {
+        let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+        for first in (0..self.nodes.x.len()).step_by(LANES) {
+            let [x, y, dx, dy] = self.columns(first);
+            for i in 0..LANES {
+                let (x, y) = (x[i] - z.re, y[i] - z.im);
+                let square = x * x + y * y;
+                let inverse = if square > R::zero() { R::one() / square } else { R::zero() };
+                re[i] += (dx[i] * x + dy[i] * y) * inverse;
+                im[i] += (dy[i] * x - dx[i] * y) * inverse;
+            }
+        }
+        let sum = |x: [R; LANES]| x.into_iter().fold(R::zero(), |sum, x| sum + x);
+        complex(sum(re), sum(im)) * self.nodes.step
+    }
+
+    /// x, y, x', y' of the nodes from `first` on; where there are no more, derivatives are 0 and nothing counts.
+    #[inline(always)]
+    fn columns(&self, first: usize) -> [[R; LANES]; 4] {
+        let n = &self.nodes;
+        [load(n.x, first, R::MAX.sqrt() * R::lit(1e-3)), load(n.y, first, R::zero()), load(n.dx, first, R::zero()), load(n.dy, first, R::zero())]
+    }
+
     /// Γ_k − z and Γ'_k.
     #[inline]
     pub(super) fn arm(&self, k: usize, z: Complex<R>) -> (Complex<R>, Complex<R>) {
@@ -101,6 +175,7 @@ impl<R: Real> Source<'_, R> {
 
     /// Keeps those candidates with which Σ_k W_ik comes closest to its exact value: 0 outside a solid, iπ on the boundary
     /// itself, 2πi inside a tank.
+    #[inline(always)]
     fn best_subset(&self, z: Complex<R>, own: Option<usize>, found: Found<R>) -> Found<R> {
         let n = self.nodes.t.len();
         let exact = match own {
@@ -108,15 +183,10 @@ impl<R: Real> Source<'_, R> {
             None if self.record.sign > R::zero() => R::TAU,
             None => R::zero(),
         };
-        let mut residual = complex(R::zero(), -exact);
-        for k in 0..n {
-            if own == Some(k) {
-                let (d, dd) = (self.arm(k, z).1, complex(at(self.nodes.ddx, k), at(self.nodes.ddy, k)));
-                residual += dd / d * (self.nodes.step * R::HALF);
-                continue;
-            }
-            let (away, tangent) = self.arm(k, z);
-            residual += tangent / away * self.nodes.step;
+        let mut residual = self.plain_sum(z) - complex(R::zero(), exact);
+        if let Some(k) = own {
+            let (d, dd) = (self.arm(k, z).1, complex(at(self.nodes.ddx, k), at(self.nodes.ddy, k)));
+            residual += dd / d * (self.nodes.step * R::HALF);
         }
         let sums = found.map(|f| f.map_or(Complex::default(), |p| pole::sum_of_weights(&p, self.table, n)));
         let [a, b] = sums;
