@@ -226,6 +226,13 @@ mod x86 {
         lanes
     }
 
+    /// Writes the first elements to a slice that is too short for all.
+    #[cold]
+    #[inline(never)]
+    fn end<R: Real, const W: usize>(lanes: [R; W], to: &mut [R]) {
+        crate::workspace::copy(to, &lanes);
+    }
+
     macro_rules! vector {
         ($name:ident, $inner:ident, $t:ident, $width:literal, $splat:ident, $fnmadd:ident, $max:ident, $abs:expr) => {
             /// A vector of a machine's own.
@@ -245,15 +252,17 @@ mod x86 {
                 }
                 #[inline(always)]
                 fn begin(from: &[$t]) -> Self {
-                    let lanes: [$t; $width] = from.first_chunk().copied().unwrap_or_else(|| begin(from));
-                    unsafe { $name(transmute::<[$t; $width], $inner>(lanes)) }
+                    // Each branch has an array of its own: one for both would pass through memory.
+                    match from.first_chunk::<$width>() {
+                        Some(lanes) => unsafe { $name(transmute::<[$t; $width], $inner>(*lanes)) },
+                        None => unsafe { $name(transmute::<[$t; $width], $inner>(begin(from))) },
+                    }
                 }
                 #[inline(always)]
                 fn store(self, to: &mut [$t]) {
-                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
                     match to.first_chunk_mut() {
-                        Some(to) => *to = lanes,
-                        None => crate::workspace::copy(to, &lanes),
+                        Some(to) => *to = unsafe { transmute::<$inner, [$t; $width]>(self.0) },
+                        None => end(unsafe { transmute::<$inner, [$t; $width]>(self.0) }, to),
                     }
                 }
                 #[inline(always)]
@@ -264,6 +273,16 @@ mod x86 {
                 fn max_abs(self, x: Self) -> Self {
                     // The instruction gives its second operand when one is NaN.
                     unsafe { $name($max(($abs)(x.0), self.0)) }
+                }
+                #[inline(always)]
+                fn prefetch(from: &[$t]) {
+                    // A hint, which no address makes wrong.
+                    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.as_ptr().cast()) }
+                }
+                #[inline(always)]
+                fn within_one(self) -> bool {
+                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
+                    lanes.into_iter().fold(true, |all, x| all & (x <= 1.0))
                 }
                 #[inline(always)]
                 fn row(self, i: usize) -> $t {
