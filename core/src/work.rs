@@ -11,7 +11,7 @@ use crate::potentials::{
 };
 use crate::scalar::{Complex, Real};
 use crate::status::{Error, Result, Status};
-use crate::workspace::{at, axpy, buffers, copy, inner, part, part_mut, put};
+use crate::workspace::{at, axpy, buffers, copy, part, part_mut, put};
 
 /// Numbers that the buffers' lengths follow from.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +41,7 @@ impl Dims {
             coordinates,
             free: p.free_coordinates,
             unknowns: p.unknowns,
-            // An odd multiple of a cache line keeps columns from falling on the same lines.
-            ld: if p.unknowns == 0 { 0 } else { p.unknowns + 8 },
+            ld: leading(p.unknowns),
             columns: p.free_coordinates + usize::from(head.prescribed_moves),
             circulating: if p.circulation { p.unknowns } else { 0 },
             channels: head.channels,
@@ -50,6 +49,20 @@ impl Dims {
         }
     }
 }
+
+/// Leading dimension of the boundary system: an odd multiple of a cache line keeps columns from falling on the same lines,
+/// and each begins where a line begins if the first does.
+pub(crate) fn leading(unknowns: usize) -> usize {
+    if unknowns == 0 { 0 } else { (unknowns.div_ceil(8) | 1) * 8 }
+}
+
+/// Reals by which the matrix may be moved to begin with a cache line, where vectors are that long.
+fn slack<R>(unknowns: usize) -> usize {
+    if unknowns > 0 && cfg!(target_arch = "x86_64") { LINE / size_of::<R>() } else { 0 }
+}
+
+/// Bytes of a cache line.
+const LINE: usize = 64;
 
 buffers! {
     /// Scratch and results of one evaluation.
@@ -77,7 +90,10 @@ buffers! {
         outer: 3 * d.links,
         spare: 3 * d.links,
         indicators: 2,
-        matrix: d.ld * (d.unknowns + d.columns),
+        /// Where in its memory the matrix begins.
+        matrix_at: 1,
+        walls_ready: 1,
+        matrix: d.ld * (d.unknowns + d.columns) + slack::<R>(d.unknowns),
         pivots: d.unknowns,
         regular: d.circulating * d.circulating,
         density: d.unknowns,
@@ -110,11 +126,12 @@ buffers! {
 macro_rules! system {
     ($w:expr) => {
         BoundarySystem {
-            matrix: $w.matrix,
-            ld: $w.pivots.len() + 8,
+            matrix: crate::work::from($w.matrix, $w.matrix_at),
+            ld: crate::work::leading($w.pivots.len()),
             unknowns: $w.pivots.len(),
             pivots: $w.pivots,
             regular: $w.regular,
+            walls_ready: $w.walls_ready,
         }
     };
 }
@@ -154,6 +171,12 @@ macro_rules! configuration {
 }
 pub(crate) use {configuration, flow, scratch, system};
 
+/// The matrix in its memory.
+pub(crate) fn from<'a, R: Real>(memory: &'a mut [R], at: &[R]) -> &'a mut [R] {
+    let at = crate::workspace::at(at, 0).to_f64() as usize;
+    memory.get_mut(at..).unwrap_or(&mut [])
+}
+
 /// Counts that a simulation keeps.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Counters {
@@ -172,7 +195,7 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn place(&mut self, model: &Model<'_, R>, t: R, p: &[R], dp: &[R]) -> Result<()> {
         set_coordinates(model, t, p, dp, self.channels, self.s, self.ds, self.dds);
         place_links(model, self.s, self.q, self.poses);
-        velocities(model, self.s, self.ds, self.q, self.qd);
+        velocities(model, self.s, self.ds, self.poses, self.qd);
         if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
             return Err(Status::NonFiniteState.into());
         }
@@ -206,14 +229,14 @@ impl<R: Real> Work<'_, R> {
         let rows = 3 * model.links.len();
         let unit = &mut *self.generalized;
         for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
-            jacobian_column(model, i, self.s, self.q, unit, part_mut(self.jacobian, c.free * rows, rows));
+            jacobian_column(model, i, self.s, self.poses, unit, part_mut(self.jacobian, c.free * rows, rows));
         }
         if model.head.prescribed_moves {
             for ((u, ds), c) in unit.iter_mut().zip(self.ds.iter()).zip(model.coordinates) {
                 *u = if c.control == Control::Prescribed { *ds } else { R::zero() };
             }
             let at = model.head.plan.free_coordinates * rows;
-            velocities(model, self.s, unit, self.q, part_mut(self.jacobian, at, rows));
+            velocities(model, self.s, unit, self.poses, part_mut(self.jacobian, at, rows));
         }
     }
 
@@ -236,13 +259,16 @@ impl<R: Real> Work<'_, R> {
             to_link_frames(c, v, m);
         }
         counters.factorizations += 1;
+        // Kept as a number, so that memory that is moved later keeps its meaning.
+        if at(self.walls_ready, 0) == R::zero() {
+            let to_line = self.matrix.as_ptr().align_offset(LINE);
+            let fits = to_line <= slack::<R>(self.pivots.len());
+            put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
+        }
         let mut system = system!(self);
         system.solve(c, self.moving, self.zx, self.zy)?;
-        let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
-        for (k, (m, p)) in columns.enumerate() {
-            copy(self.solution, system.column(k));
-            add_interior_potential(c, m, R::one(), self.solution);
-            flux_moments(c, self.solution, p);
+        system.momenta(c, self.moving, [self.hx, self.hy, self.fx], self.momenta);
+        for p in self.momenta.chunks_exact_mut(rows.max(1)) {
             to_world(c, density, p);
         }
         Ok(())
@@ -252,26 +278,38 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
         let mut asymmetry = R::zero();
+        // What does not move adds nothing.
+        let moves = |column: &[R]| {
+            let first = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
+            (first, column.iter().rposition(|x| *x != R::zero()).map_or(0, |last| last + 1 - first))
+        };
+        let product = |column: &[R], (first, count): (usize, usize), momentum: &[R]| {
+            let pairs = part(column, first, count).iter().zip(part(momentum, first, count));
+            pairs.fold(R::zero(), |s, (x, y)| s + *x * *y)
+        };
         for k in 0..n {
-            let column = part(self.jacobian, k * rows, rows);
+            let (column, momentum) = (part(self.jacobian, k * rows, rows), part(self.momenta, k * rows, rows));
+            let own = moves(column);
+            copy(self.spare, column);
+            for (p, l) in self.spare.as_chunks_mut::<3>().0.iter_mut().zip(model.links) {
+                for (p, m) in p.iter_mut().zip([l.mass, l.mass, l.inertia]) {
+                    *p *= m;
+                }
+            }
             // The diagonal first: the asymmetry of the others is measured by it.
             for j in (0..=k).rev() {
                 let other = part(self.jacobian, j * rows, rows);
-                let halves = [
-                    inner(other, part(self.momenta, k * rows, rows)),
-                    inner(column, part(self.momenta, j * rows, rows)),
-                ];
-                let mut sum = (halves[0] + halves[1]) * R::HALF;
-                for (i, l) in model.links.iter().enumerate() {
-                    let (a, b) = (twist_of(column, i), twist_of(other, i));
-                    sum += l.mass * crate::scalar::dot(a.linear, b.linear) + l.inertia * a.angular * b.angular;
-                }
+                let moved = moves(other);
+                let halves =
+                    [product(other, moved, momentum), product(column, own, part(self.momenta, j * rows, rows))];
+                let sum = (halves[0] + halves[1]) * R::HALF + product(other, moved, self.spare);
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
-                let scale = at(self.reduced, k * n + k).sqrt() * at(self.reduced, j * n + j).sqrt();
-                if scale > R::zero() {
-                    asymmetry = asymmetry.max((halves[0] - halves[1]).abs() / scale);
+                if j == k {
+                    put(self.reduced_pivots, k, if sum > R::zero() { R::one() / sum.sqrt() } else { R::zero() });
                 }
+                let scale = at(self.reduced_pivots, k) * at(self.reduced_pivots, j);
+                asymmetry = asymmetry.max((halves[0] - halves[1]).abs() * scale);
             }
         }
         put(self.indicators, 0, asymmetry.max(model.head.lone_resolution[0]));
@@ -304,11 +342,20 @@ impl<R: Real> Work<'_, R> {
             let free = model.head.plan.free_coordinates;
             let rates = model.coordinates.iter().zip(self.ds.iter()).filter(|(c, _)| c.control != Control::Prescribed);
             let last = core::iter::repeat_n(R::one(), (self.jacobian.len() / rows.max(1)).saturating_sub(free));
-            system.combine(rates.map(|(_, ds)| *ds).chain(last), self.density);
+            let rates = rates.map(|(_, ds)| *ds).chain(last);
+            system.combine(rates.clone(), self.density);
+            self.spare.fill(R::zero());
+            for (rate, momentum) in rates.zip(self.momenta.chunks_exact(rows.max(1))) {
+                axpy(self.spare, rate, momentum);
+            }
         } else {
             self.density.fill(R::zero());
             add_interior_potential(c, self.v, -R::TWO, self.density);
             system.factors().solve(self.density);
+            copy(self.solution, self.density);
+            add_interior_potential(c, self.v, R::one(), self.solution);
+            flux_moments(c, self.solution, self.spare);
+            to_world(c, model.head.fluid_density, self.spare);
         }
         fill_flux(c, self.v, self.adjoint);
         // ½ Xᵀ B v now, −Xᵀ λ after the solve: M_hᵀ v = Xᵀ (B v − 2 λ).
@@ -316,11 +363,8 @@ impl<R: Real> Work<'_, R> {
         add_potential_moments(c, self.adjoint, R::HALF, self.momentum);
         system.factors().solve_transposed(self.adjoint);
         add_potential_moments(c, self.adjoint, -R::one(), self.momentum);
-        copy(self.solution, self.density);
-        add_interior_potential(c, self.v, R::one(), self.solution);
-        flux_moments(c, self.solution, self.spare);
-        axpy(self.momentum, R::HALF, self.spare);
         to_world(c, model.head.fluid_density, self.momentum);
+        axpy(self.momentum, R::HALF, self.spare);
     }
 }
 

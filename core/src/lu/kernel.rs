@@ -8,7 +8,7 @@
 #![allow(unsafe_code)]
 
 use super::Rows;
-use super::portable::Portable;
+use super::portable::{Portable, divide};
 #[cfg(target_arch = "x86_64")]
 use super::tile::{self, Lanes};
 use crate::scalar::Real;
@@ -20,6 +20,10 @@ pub(super) trait Kernel<R: Real>: Copy {
     /// Elimination with partial pivoting of at most [`super::BLOCK`] columns from row `k` on. Returns the smallest and the
     /// largest pivot; `None` when there is none.
     fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)>;
+    /// A ← A U⁻¹ in the rows `to ..` of a block of at most [`super::BLOCK`] columns, whose rows `from ..` hold U.
+    fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
+        divide(block, ld, rows);
+    }
     /// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`super::BLOCK`]).
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
     /// Solves with the upper triangle there.
@@ -28,8 +32,8 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn small(self) -> usize {
         0
     }
-    /// Scalar product.
-    fn inner(self, a: &[R], b: &[R]) -> R;
+    /// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`.
+    fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]);
 }
 
 /// A computation that is worth compiling for the machine's own instructions: everything that `run` calls must be inlined.
@@ -58,7 +62,6 @@ pub(crate) use x86::Level;
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
-    use crate::workspace::inner;
     use core::arch::x86_64::*;
     use core::mem::transmute;
 
@@ -175,6 +178,15 @@ mod x86 {
                     unsafe { compiled(block, ld, n, k, pivots) }
                 }
                 #[inline(always)]
+                fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
+                    #[target_feature(enable = $features)]
+                    fn compiled<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
+                        tile::divide::<R, R::$vector>(block, ld, rows);
+                    }
+                    // SAFETY: `self` proves that the machine has these instructions.
+                    unsafe { compiled(block, ld, rows) }
+                }
+                #[inline(always)]
                 fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
@@ -193,13 +205,13 @@ mod x86 {
                     unsafe { compiled(left, ld, k, right) }
                 }
                 #[inline(always)]
-                fn inner(self, a: &[R], b: &[R]) -> R {
+                fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]) {
                     #[target_feature(enable = $features)]
-                    fn compiled<R: Real>(a: &[R], b: &[R]) -> R {
-                        inner(a, b)
+                    fn compiled<R: Real>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+                        tile::solve_transposed::<R, R::$vector>(lu, ld, n, b);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
-                    unsafe { compiled(a, b) }
+                    unsafe { compiled(lu, ld, n, b) }
                 }
             }
         };
@@ -226,6 +238,13 @@ mod x86 {
         lanes
     }
 
+    /// Writes the first elements to a slice that is too short for all.
+    #[cold]
+    #[inline(never)]
+    fn end<R: Real, const W: usize>(lanes: [R; W], to: &mut [R]) {
+        crate::workspace::copy(to, &lanes);
+    }
+
     macro_rules! vector {
         ($name:ident, $inner:ident, $t:ident, $width:literal, $splat:ident, $fnmadd:ident, $max:ident, $abs:expr) => {
             /// A vector of a machine's own.
@@ -245,15 +264,17 @@ mod x86 {
                 }
                 #[inline(always)]
                 fn begin(from: &[$t]) -> Self {
-                    let lanes: [$t; $width] = from.first_chunk().copied().unwrap_or_else(|| begin(from));
-                    unsafe { $name(transmute::<[$t; $width], $inner>(lanes)) }
+                    // Each branch has an array of its own: one for both would pass through memory.
+                    match from.first_chunk::<$width>() {
+                        Some(lanes) => unsafe { $name(transmute::<[$t; $width], $inner>(*lanes)) },
+                        None => unsafe { $name(transmute::<[$t; $width], $inner>(begin(from))) },
+                    }
                 }
                 #[inline(always)]
                 fn store(self, to: &mut [$t]) {
-                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
                     match to.first_chunk_mut() {
-                        Some(to) => *to = lanes,
-                        None => crate::workspace::copy(to, &lanes),
+                        Some(to) => *to = unsafe { transmute::<$inner, [$t; $width]>(self.0) },
+                        None => end(unsafe { transmute::<$inner, [$t; $width]>(self.0) }, to),
                     }
                 }
                 #[inline(always)]
@@ -261,9 +282,25 @@ mod x86 {
                     unsafe { $name($fnmadd(a.0, b.0, self.0)) }
                 }
                 #[inline(always)]
+                fn sum(self) -> $t {
+                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
+                    let (pairs, _) = lanes.as_chunks::<4>();
+                    pairs.iter().fold(0.0, |s, [a, b, c, d]| s + ((a + b) + (c + d)))
+                }
+                #[inline(always)]
                 fn max_abs(self, x: Self) -> Self {
                     // The instruction gives its second operand when one is NaN.
                     unsafe { $name($max(($abs)(x.0), self.0)) }
+                }
+                #[inline(always)]
+                fn prefetch(from: &[$t]) {
+                    // A hint, which no address makes wrong.
+                    unsafe { _mm_prefetch::<_MM_HINT_T0>(from.as_ptr().cast()) }
+                }
+                #[inline(always)]
+                fn within_one(self) -> bool {
+                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
+                    lanes.into_iter().fold(true, |all, x| all & (x <= 1.0))
                 }
                 #[inline(always)]
                 fn row(self, i: usize) -> $t {

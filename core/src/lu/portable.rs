@@ -94,8 +94,17 @@ impl<R: Real> Kernel<R> for Portable {
         64
     }
 
-    fn inner(self, a: &[R], b: &[R]) -> R {
-        inner(a, b)
+    fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+        for c in 0..n {
+            let u = part(lu, c * ld, n);
+            let value = (at(b, c) - inner(part(u, 0, c), part(b, 0, c))) / at(u, c);
+            put(b, c, value);
+        }
+        for c in (0..n).rev() {
+            let (l, below) = (part(lu, c * ld, n), n - c - 1);
+            let value = at(b, c) - inner(part(l, c + 1, below), part(b, c + 1, below));
+            put(b, c, value);
+        }
     }
 }
 
@@ -153,5 +162,23 @@ fn subtract_from_two<R: Real>(left: &[R], ld: usize, rows: Rows, first: &mut [R]
     for (((((((((u, v), a), b), c), d), e), f), g), h) in rows {
         *u -= (*a * x[0] + *b * x[1]) + (*c * x[2] + *d * x[3]) + ((*e * x[4] + *f * x[5]) + (*g * x[6] + *h * x[7]));
         *v -= (*a * y[0] + *b * y[1]) + (*c * y[2] + *d * y[3]) + ((*e * y[4] + *f * y[5]) + (*g * y[6] + *h * y[7]));
+    }
+}
+
+/// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
+pub(super) fn divide<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
+    for c in 0..block.len().checked_div(ld).unwrap_or(0) {
+        let Some((done, rest)) = block.split_at_mut_checked(c * ld) else { return };
+        let column = part_mut(rest, 0, ld);
+        for (p, left) in done.chunks_exact(ld.max(1)).enumerate() {
+            let x = at(column, rows.from + p);
+            for (y, l) in part_mut(column, rows.to, rows.count).iter_mut().zip(part(left, rows.to, rows.count)) {
+                *y -= x * *l;
+            }
+        }
+        let inverse = R::one() / at(column, rows.from + c);
+        for y in part_mut(column, rows.to, rows.count) {
+            *y *= inverse;
+        }
     }
 }

@@ -10,6 +10,9 @@ use crate::workspace::{at, part, part_mut, put};
 /// Columns of a tile.
 const COLUMNS: usize = 4;
 
+/// Depth of a product from which on its tiles are worth fetching ahead.
+const FAR: usize = 64;
+
 /// A vector of a few rows of one column.
 pub trait Lanes<R>: Copy {
     /// Rows.
@@ -24,8 +27,14 @@ pub trait Lanes<R>: Copy {
     fn store(self, to: &mut [R]);
     /// `self − a b`.
     fn minus_product(self, a: Self, b: Self) -> Self;
+    /// Sum of the rows.
+    fn sum(self) -> R;
     /// The larger of `self` and |x|, row by row; `self` where x is NaN.
     fn max_abs(self, x: Self) -> Self;
+    /// Asks for the memory of a slice's first element ahead of its use.
+    fn prefetch(from: &[R]);
+    /// Whether no row, all ≥ 0, exceeds 1.
+    fn within_one(self) -> bool;
     /// One row.
     fn row(self, i: usize) -> R;
     /// The largest row.
@@ -56,15 +65,25 @@ fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: 
     if depth == 0 {
         return;
     }
-    let mut groups = right.chunks_exact_mut((COLUMNS * ld).max(1));
-    for group in groups.by_ref() {
+    let mut rest = right;
+    while rest.len() >= COLUMNS * ld {
+        let (group, others) = rest.split_at_mut_checked(COLUMNS * ld).unwrap_or((&mut [], &mut []));
+        if depth >= FAR {
+            // What the next tile changes is on its way while this one is computed.
+            for column in others.chunks(ld).take(COLUMNS) {
+                for i in 0..=M {
+                    V::prefetch(part(column, rows.to + i * V::WIDTH, 1));
+                }
+            }
+        }
+        rest = others;
         let (first, second) = halves(group);
         let ((w, x), (y, z)) = (halves(first), halves(second));
         let ((b0, c0), (b1, c1)) = (rows.of(w, depth), rows.of(x, depth));
         let ((b2, c2), (b3, c3)) = (rows.of(y, depth), rows.of(z, depth));
         tile::<R, V, M>(a, ld, [b0, b1, b2, b3], [c0, c1, c2, c3]);
     }
-    for column in groups.into_remainder().chunks_mut(ld.max(1)) {
+    for column in rest.chunks_mut(ld.max(1)) {
         let (b, c) = rows.of(column, depth);
         tile_of_one::<R, V, M>(a, ld, b, c);
     }
@@ -92,8 +111,12 @@ impl Rows {
 #[inline(always)]
 fn tile<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, b: [&[R]; COLUMNS], c: [&mut [R]; COLUMNS]) {
     let [c0, c1, c2, c3] = c;
-    let mut sums = [begin(c0), begin(c1), begin(c2), begin(c3)];
     let [b0, b1, b2, b3] = b;
+    // Whole vectors in one branch, so that they need not pass through memory.
+    let mut sums = match (load(c0), load(c1), load(c2), load(c3)) {
+        (Some(s0), Some(s1), Some(s2), Some(s3)) => [s0, s1, s2, s3],
+        _ => [begin(c0), begin(c1), begin(c2), begin(c3)],
+    };
     let mut rest = a;
     for (((b0, b1), b2), b3) in b0.iter().zip(b1).zip(b2).zip(b3) {
         let Some(rows) = load::<R, V, M>(rest) else { break };
@@ -175,10 +198,207 @@ fn store<R: Real, V: Lanes<R>, const M: usize>(rows: [V; M], to: &mut [R]) {
     }
 }
 
-/// Left-looking elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and
-/// the largest pivot; `None` when there is none.
+/// Elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and the largest
+/// pivot; `None` when there is none.
 #[inline(always)]
 pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
+    block: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    pivots: &mut [R],
+) -> Option<(R, R)> {
+    let straight = match BLOCK / V::WIDTH {
+        1 => eliminate_straight::<R, V, 1>(block, ld, n, k, pivots),
+        2 => eliminate_straight::<R, V, 2>(block, ld, n, k, pivots),
+        _ => eliminate_straight::<R, V, 4>(block, ld, n, k, pivots),
+    };
+    if straight.is_some() { straight } else { eliminate_exchanging::<R, V>(block, ld, n, k, pivots) }
+}
+
+/// Elimination of a whole block in one pass over its rows, without a search for pivots, provided that partial pivoting would
+/// exchange no rows: that no multiplier exceeds 1. Otherwise `None`, and the block is (to rounding) what it was.
+#[inline(always)]
+fn eliminate_straight<R: Real, V: Lanes<R>, const H: usize>(
+    block: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    pivots: &mut [R],
+) -> Option<(R, R)> {
+    if pivots.len() != BLOCK {
+        return None;
+    }
+    let mut tops = [[R::zero(); BLOCK]; BLOCK];
+    let mut columns: [&mut [R]; BLOCK] = [&mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut []];
+    for ((to, below), column) in tops.iter_mut().zip(&mut columns).zip(columns_of(block, ld)?) {
+        let (top, rest) = part_mut(column, k, n - k).split_first_chunk_mut::<BLOCK>()?;
+        (*to, *below) = (*top, rest);
+    }
+    let inverses = triangularize::<R, V, H>(&mut tops)?;
+    let (mut smallest, mut largest) = (R::MAX, R::zero());
+    for (p, column) in tops.iter().enumerate() {
+        let size = at(column, p).abs();
+        (smallest, largest) = (smallest.min(size), largest.max(size));
+    }
+    let rows = n - k - BLOCK;
+    let mut done = 0;
+    while done < rows {
+        let x = divided::<R, V>(rows_of(&columns, done), &tops, &inverses);
+        if !x.iter().fold(V::splat(R::zero()), |m, x| m.max_abs(*x)).within_one() {
+            for row in (0..done).step_by(V::WIDTH) {
+                store_rows(multiplied::<R, V>(rows_of(&columns, row), &tops), &mut columns, row);
+            }
+            return None;
+        }
+        store_rows(x, &mut columns, done);
+        done += V::WIDTH;
+    }
+    for (c, (pivot, top)) in pivots.iter_mut().zip(&tops).enumerate() {
+        *pivot = R::count(k + c);
+        crate::workspace::copy(part_mut(block, c * ld + k, BLOCK), top);
+    }
+    Some((smallest, largest))
+}
+
+/// The columns of a whole block.
+#[inline(always)]
+fn columns_of<R>(block: &mut [R], ld: usize) -> Option<[&mut [R]; BLOCK]> {
+    let (first, second) = halves(block.get_mut(..BLOCK * ld)?);
+    let ((a, b), (c, d)) = (halves(first), halves(second));
+    let (((a, b), (c, d)), ((e, f), (g, h))) = ((halves(a), halves(b)), (halves(c), halves(d)));
+    Some([a, b, c, d, e, f, g, h])
+}
+
+/// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
+#[inline(always)]
+pub(super) fn divide<R: Real, V: Lanes<R>>(block: &mut [R], ld: usize, rows: Rows) {
+    let Some(columns) = columns_of(block, ld) else { return super::portable::divide(block, ld, rows) };
+    let (mut tops, mut inverses) = ([[R::zero(); BLOCK]; BLOCK], [R::zero(); BLOCK]);
+    let mut below: [&mut [R]; BLOCK] = [&mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut []];
+    let parts = tops.iter_mut().zip(&mut inverses).zip(&mut below).zip(columns);
+    for (c, (((top, inverse), below), column)) in parts.enumerate() {
+        crate::workspace::copy(top, part(column, rows.from, BLOCK));
+        *inverse = R::one() / at(top, c);
+        *below = part_mut(column, rows.to, rows.count);
+    }
+    for row in (0..rows.count).step_by(V::WIDTH) {
+        store_rows(divided::<R, V>(rows_of(&below, row), &tops, &inverses), &mut below, row);
+    }
+}
+
+/// Factors of a block of columns in place, without exchanges; the inverse pivots. `None` if a multiplier exceeds 1 or a
+/// pivot is 0 or not finite.
+#[inline(always)]
+fn triangularize<R: Real, V: Lanes<R>, const H: usize>(columns: &mut [[R; BLOCK]; BLOCK]) -> Option<[R; BLOCK]> {
+    let mut u = columns.map(|column| begin::<R, V, H>(&column));
+    // Written out: what a loop over columns indexes would not stay in registers.
+    let inverses = [
+        eliminate_one::<R, V, H, 0>(&mut u)?,
+        eliminate_one::<R, V, H, 1>(&mut u)?,
+        eliminate_one::<R, V, H, 2>(&mut u)?,
+        eliminate_one::<R, V, H, 3>(&mut u)?,
+        eliminate_one::<R, V, H, 4>(&mut u)?,
+        eliminate_one::<R, V, H, 5>(&mut u)?,
+        eliminate_one::<R, V, H, 6>(&mut u)?,
+        eliminate_one::<R, V, H, 7>(&mut u)?,
+    ];
+    for (column, u) in columns.iter_mut().zip(u) {
+        store(u, column);
+    }
+    Some(inverses)
+}
+
+/// Eliminates column `P`.
+#[inline(always)]
+fn eliminate_one<R: Real, V: Lanes<R>, const H: usize, const P: usize>(u: &mut [[V; H]; BLOCK]) -> Option<R> {
+    let (zero, row) = (V::splat(R::zero()), |y: &[V; H]| y.get(P / V::WIDTH).map_or(R::NAN, |y| y.row(P % V::WIDTH)));
+    let (done, later) = u.split_at_mut_checked(P + 1)?;
+    let own = done.last_mut()?;
+    let pivot = row(own);
+    if pivot == R::zero() || !pivot.is_finite() {
+        return None;
+    }
+    let inverse = R::one() / pivot;
+    let mut below = [R::zero(); BLOCK];
+    below.iter_mut().skip(P + 1).for_each(|x| *x = R::one());
+    let (below, mut l, mut largest) = (begin::<R, V, H>(&below), [zero; H], zero);
+    for ((l, x), below) in l.iter_mut().zip(own).zip(below) {
+        let part = zero.minus_product(*x, below);
+        *l = zero.minus_product(part, V::splat(inverse));
+        *x = x.minus_product(*x, below).minus_product(*l, V::splat(-R::one()));
+        largest = largest.max_abs(*l);
+    }
+    for y in later {
+        let x = V::splat(row(y));
+        for (y, l) in y.iter_mut().zip(l) {
+            *y = y.minus_product(l, x);
+        }
+    }
+    largest.within_one().then_some(inverse)
+}
+
+/// Rows of A U⁻¹ from rows of A.
+#[inline(always)]
+fn divided<R: Real, V: Lanes<R>>(mut x: [V; BLOCK], u: &[[R; BLOCK]; BLOCK], inverses: &[R; BLOCK]) -> [V; BLOCK] {
+    let zero = V::splat(R::zero());
+    for c in 0..BLOCK {
+        let (done, rest) = x.split_at_mut_checked(c).unwrap_or((&mut [], &mut []));
+        if let ([x, ..], Some(u), Some(inverse)) = (rest, u.get(c), inverses.get(c)) {
+            for (l, u) in done.iter().zip(u) {
+                *x = x.minus_product(*l, V::splat(*u));
+            }
+            *x = zero.minus_product(*x, V::splat(-*inverse));
+        }
+    }
+    x
+}
+
+/// Rows of L U from rows of L.
+#[inline(always)]
+fn multiplied<R: Real, V: Lanes<R>>(mut l: [V; BLOCK], u: &[[R; BLOCK]; BLOCK]) -> [V; BLOCK] {
+    for c in (0..BLOCK).rev() {
+        let (before, rest) = l.split_at_mut_checked(c).unwrap_or((&mut [], &mut []));
+        if let ([x, ..], Some(u)) = (rest, u.get(c)) {
+            *x = V::splat(R::zero()).minus_product(*x, V::splat(-at(u, c)));
+            for (l, u) in before.iter().zip(u) {
+                *x = x.minus_product(*l, V::splat(-*u));
+            }
+        }
+    }
+    l
+}
+
+/// A vector of rows of every column of a block; 0 beyond the last row.
+#[inline(always)]
+fn rows_of<R: Real, V: Lanes<R>>(columns: &[&mut [R]; BLOCK], row: usize) -> [V; BLOCK] {
+    let whole = || {
+        let mut x = [V::splat(R::zero()); BLOCK];
+        for (x, column) in x.iter_mut().zip(columns) {
+            *x = V::load(column.get(row..)?)?;
+        }
+        Some(x)
+    };
+    // Whole vectors in one branch, so that they need not pass through memory.
+    whole().unwrap_or_else(|| {
+        let mut x = [V::splat(R::zero()); BLOCK];
+        for (x, column) in x.iter_mut().zip(columns) {
+            *x = V::begin(column.get(row..).unwrap_or(&[]));
+        }
+        x
+    })
+}
+
+#[inline(always)]
+fn store_rows<R: Real, V: Lanes<R>>(x: [V; BLOCK], columns: &mut [&mut [R]; BLOCK], row: usize) {
+    for (x, column) in x.into_iter().zip(columns) {
+        x.store(column.get_mut(row..).unwrap_or(&mut []));
+    }
+}
+
+/// The same, left-looking, with exchanges.
+#[inline(always)]
+fn eliminate_exchanging<R: Real, V: Lanes<R>>(
     block: &mut [R],
     ld: usize,
     n: usize,
@@ -354,4 +574,68 @@ fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V;
         *out = out.minus_product(y, scale);
     }
     out
+}
+
+/// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`: eight scalar products at a time.
+#[inline(always)]
+pub(super) fn solve_transposed<R: Real, V: Lanes<R>>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+    for k in (0..n).step_by(BLOCK) {
+        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let known = products::<R, V>(columns, ld, 0, part(b, 0, k));
+        let mut x = [R::zero(); BLOCK];
+        crate::workspace::copy(&mut x, part(b, k, width));
+        for (c, (u, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate() {
+            let u = part(u, k, width);
+            let sum = x.iter().zip(u).take(c).fold(known, |s, (x, u)| s + *x * *u);
+            let value = (at(&x, c) - sum) / at(u, c);
+            put(&mut x, c, value);
+        }
+        crate::workspace::copy(part_mut(b, k, width), &x);
+    }
+    for k in (0..n).step_by(BLOCK).rev() {
+        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let known = products::<R, V>(columns, ld, k + width, part(b, k + width, n - k - width));
+        let mut x = [R::zero(); BLOCK];
+        crate::workspace::copy(&mut x, part(b, k, width));
+        for (c, (l, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate().rev() {
+            let l = part(l, k, width);
+            let sum = x.iter().zip(l).skip(c + 1).fold(known, |s, (x, l)| s + *x * *l);
+            let value = at(&x, c) - sum;
+            put(&mut x, c, value);
+        }
+        crate::workspace::copy(part_mut(b, k, width), &x);
+    }
+}
+
+/// Scalar products of `y` with the rows from `row` on of at most [`BLOCK`] columns.
+#[inline(always)]
+fn products<R: Real, V: Lanes<R>>(columns: &[R], ld: usize, row: usize, y: &[R]) -> [R; BLOCK] {
+    let mut sides: [&[R]; BLOCK] = [&[]; BLOCK];
+    for (side, column) in sides.iter_mut().zip(columns.chunks_exact(ld.max(1))) {
+        *side = part(column, row, y.len());
+    }
+    // Missing columns take the first one's place.
+    let [first, ..] = sides;
+    for side in &mut sides {
+        if side.is_empty() {
+            *side = first;
+        }
+    }
+    let mut sums = [V::splat(R::zero()); BLOCK];
+    let whole = y.len() - y.len() % V::WIDTH;
+    let mut done = 0;
+    while done < whole {
+        let Some(y) = y.get(done..).and_then(V::load) else { break };
+        for (sum, side) in sums.iter_mut().zip(&sides) {
+            let Some(side) = side.get(done..).and_then(V::load) else { break };
+            *sum = sum.minus_product(side, y);
+        }
+        done += V::WIDTH;
+    }
+    let mut products = [R::zero(); BLOCK];
+    for ((product, sum), side) in products.iter_mut().zip(sums).zip(&sides) {
+        let rest = part(side, whole, y.len() - whole).iter().zip(part(y, whole, y.len() - whole));
+        *product = rest.fold(-sum.sum(), |s, (x, y)| s + *x * *y);
+    }
+    products
 }
