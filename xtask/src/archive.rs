@@ -42,7 +42,12 @@ impl Machine {
 
 /// Builds the archive without std, without heap and without a panic handler of its own.
 pub fn build(machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> {
-    let mut command = cargo(&["rustc", "--quiet", "--package", "nekton-ffi", "--lib", "--crate-type", "staticlib"]);
+    build_package("nekton-ffi", machine, compiler)
+}
+
+/// An archive of one of the packages that can do without std.
+pub fn build_package(package: &str, machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> {
+    let mut command = cargo(&["rustc", "--quiet", "--package", package, "--lib", "--crate-type", "staticlib"]);
     command.args(["--no-default-features", "--profile", "embedded", "--target-dir"]).arg(machine.place());
     let mut folder = machine.place();
     if let Some((target, processor)) = machine.target {
@@ -50,7 +55,7 @@ pub fn build(machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> 
         folder.push(target);
     }
     ask(compiler.used_by(&mut command))?;
-    Ok(folder.join("embedded/libnekton_ffi.a"))
+    Ok(folder.join(format!("embedded/lib{}.a", package.replace('-', "_"))))
 }
 
 /// Symbols of an object or archive of which `nm` says one of these letters.

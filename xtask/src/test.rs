@@ -39,7 +39,7 @@ pub fn run() -> ExitCode {
         "core tests with fft",
         &mut cargo(&["test", "--package", "nekton", "--features", "fft", "--no-fail-fast"]),
     );
-    steps.run("instructions per evaluation", crate::bench::held);
+    steps.run("instructions per evaluation", crate::counts::held);
     steps.command(
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
