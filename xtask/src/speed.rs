@@ -2,7 +2,7 @@
 
 use crate::bench::TABLE;
 use crate::steps::{Outcome, cargo, execute, read, root};
-use crate::trade::{Csv, between, short};
+use crate::trade::{Csv, between};
 use std::fs;
 
 type Result<T> = std::result::Result<T, String>;
@@ -28,14 +28,22 @@ pub fn write() -> Result<()> {
     }
 }
 
+/// A number with about three digits; a dash for none.
+fn digits(x: Option<f64>) -> String {
+    let Some(x) = x else { return "–".into() };
+    let places = [100.0, 10.0, 0.1, 0.01, 0.001].iter().position(|least| x >= *least).unwrap_or(5);
+    let text = format!("{x:.places$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+}
+
 /// A value, or a time with its unit.
 fn shown(text: &str, time: bool) -> String {
-    match text.parse::<f64>() {
-        Ok(x) if time && x < 1e-6 => format!("{} ns", short(&(x * 1e9).to_string())),
-        Ok(x) if time && x < 1e-3 => format!("{} µs", short(&(x * 1e6).to_string())),
-        Ok(x) if time => format!("{} ms", short(&(x * 1e3).to_string())),
-        Ok(x) if x != 0.0 && x < 0.01 => format!("1/{}", short(&x.recip().to_string())),
-        _ => short(text),
+    let x = text.parse::<f64>().ok();
+    match x {
+        Some(x) if time && x < 1e-6 => format!("{} ns", digits(Some(1e9 * x))),
+        Some(x) if time && x < 1e-3 => format!("{} µs", digits(Some(1e6 * x))),
+        Some(x) if time => format!("{} ms", digits(Some(1e3 * x))),
+        _ => digits(x),
     }
 }
 
@@ -84,10 +92,10 @@ fn by_size(table: &Csv) -> Result<String> {
     for size in ["64", "128", "256", "512", "1024"] {
         text += &format!(
             "| {size} | {} | {} | {} | {} |\n",
-            short(&cell("evaluation of 4 bodies", size, "value")?),
-            short(&cell("factorization alone", size, "value")?),
+            digits(cell("evaluation of 4 bodies", size, "value")?.parse().ok()),
+            digits(cell("factorization alone", size, "value")?.parse().ok()),
             cell("factorization alone", size, "note")?.trim_end_matches(" GFlop/s"),
-            short(&cell("build without SIMD dispatch", size, "value")?),
+            digits(cell("build without SIMD dispatch", size, "value")?.parse().ok()),
         );
     }
     Ok(text)

@@ -223,7 +223,7 @@ pub fn between(page: &str, marker: &str, table: &str) -> Result<String> {
 }
 
 /// A number with two digits, as people write it.
-pub fn short(text: &str) -> String {
+fn short(text: &str) -> String {
     match text.parse::<f64>() {
         Ok(0.0) => "0".into(),
         Ok(x) if (0.01..1000.0).contains(&x.abs()) => {
