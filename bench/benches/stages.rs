@@ -1,4 +1,4 @@
-//! `cargo bench`: every stage of an evaluation, whole evaluations, steps and set-up, in both precisions, for arrays of moving
+//! `cargo bench -p nekton-bench`: every stage of an evaluation, whole evaluations, steps and set-up, in both precisions, for arrays of moving
 //! ellipses: plain quadrature at gap 1, graded quadrature at gaps of 0.1 and 0.001.
 
 use divan::Bencher;
