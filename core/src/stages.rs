@@ -3,10 +3,11 @@
 use crate::configuration::{Configuration, Poses};
 use crate::near::Near;
 use crate::nystrom::assemble;
+use crate::potentials::BoundarySystem;
 use crate::scalar::Real;
 use crate::sim::{Sim, split_state};
 use crate::status::Result;
-use crate::work::configuration;
+use crate::work::{configuration, system};
 
 /// A part.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -37,8 +38,8 @@ impl<R: Real> Sim<'_, R> {
             }
             Stage::Grade => work.grade(&model),
             Stage::Assemble => {
-                let (model, ld) = (&model, work.pivots.len() + 8);
-                assemble(&configuration!(work, model), work.matrix, ld, work.regular, work.zx, work.zy);
+                let (model, system) = (&model, system!(work));
+                assemble(&configuration!(work, model), system.matrix, system.ld, system.regular, work.zx, work.zy);
                 Ok(())
             }
             Stage::Solve => work.solve_fluid(&model, &mut crate::Counters::default()),
