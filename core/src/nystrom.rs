@@ -9,7 +9,7 @@ use crate::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_te
 use crate::configuration::{Configuration, fill_targets, targets};
 use crate::lu::{Machine, Task};
 use crate::model::ModelHead;
-use crate::near::pole;
+use crate::near::{self, pole};
 use crate::scalar::{Complex, Real, complex};
 use crate::workspace::{copy, part, part_mut, put};
 
@@ -48,7 +48,7 @@ pub(crate) fn fill_walls<R: Real>(
                     put(g.data, at + k * n + i, w.re);
                 }
             }
-            if source.table.is_empty() {
+            if !near::HERE || source.table.is_empty() {
                 continue;
             }
             for (i, z) in targets(&points, target.pose, b.pose).enumerate() {

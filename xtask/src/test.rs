@@ -26,6 +26,10 @@ pub fn run() -> ExitCode {
         "core without std",
         &mut cargo(&["build", "--package", "nekton", "--no-default-features", "--features", "alloc"]),
     );
+    steps.command(
+        "core without graded quadrature",
+        &mut cargo(&["test", "--package", "nekton", "--no-default-features", "--test", "without_near"]),
+    );
     steps.run("core for a bare target", bare);
     steps.run("embedded archive, program without operating system", || match firmware::freestanding() {
         Ok(()) => Outcome::Passed,
