@@ -23,10 +23,13 @@ pub struct Machine {
     pub tools: &'static str,
     /// Their name of its object files.
     pub format: &'static str,
+    /// Features that the archive has beyond the least.
+    pub features: &'static str,
 }
 
-/// This computer, without its operating system.
-pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "", format: FORMAT };
+/// This computer, without its operating system; with every feature, so that the proofs are about all code.
+pub const HERE: Machine =
+    Machine { folder: "freestanding", target: None, tools: "", format: FORMAT, features: "near,implicit" };
 const FORMAT: &str = if cfg!(target_arch = "aarch64") { "elf64-littleaarch64" } else { "elf64-x86-64" };
 
 impl Machine {
@@ -50,6 +53,9 @@ pub fn build_package(package: &str, machine: &Machine, compiler: &Compiler) -> R
     let mut command = cargo(&["rustc", "--quiet", "--package", package, "--lib", "--crate-type", "staticlib"]);
     command.args(["--no-default-features", "--profile", "embedded", "--target-dir"]).arg(machine.place());
     let mut folder = machine.place();
+    if !machine.features.is_empty() {
+        command.args(["--features", machine.features]);
+    }
     if let Some((target, processor)) = machine.target {
         command.args(["--target", target]).env("RUSTFLAGS", format!("-Ctarget-cpu={processor}"));
         folder.push(target);

@@ -18,7 +18,7 @@ struct Board {
 
 const fn cortex(processor: &'static str) -> Machine {
     let target = Some((CORTEX_M, processor));
-    Machine { folder: processor, target, tools: "arm-none-eabi-", format: "elf32-littlearm" }
+    Machine { folder: processor, target, tools: "arm-none-eabi-", format: "elf32-littlearm", features: "" }
 }
 
 const BOARDS: [Board; 2] = [
