@@ -6,7 +6,7 @@
 use crate::christoffel::add_three;
 use crate::configuration::{Configuration, targets};
 use crate::forces::close_range;
-use crate::near::{self, preimage::Source};
+use crate::near::preimage::Source;
 use crate::scalar::{Complex, Real, cabs};
 use crate::scene::Repulsion;
 
@@ -59,7 +59,7 @@ fn each_pair<R: Real>(c: &Configuration<'_, R>, alpha: R, mut visit: impl FnMut(
             let shift = source.unturned(c.pose(i).origin - source.origin);
             for (z, d) in targets(&a_nodes, c.pose(i), source).zip(a_nodes.tangents()) {
                 let mut sums = Sums::default();
-                let close = if !near::HERE || tables.is_empty() { None } else { inner.footprint(z) };
+                let close = if tables.is_empty() { None } else { inner.footprint(z) };
                 match close {
                     Some((t, beta)) => close_range::each_node(&inner.view.curve, tables, t, beta, |x, ds| {
                         sums.add(z, x - b.origin, ds, alpha);
