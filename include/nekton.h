@@ -171,7 +171,8 @@ enum {
 
 /**
  * Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
- * accuracy down to tiny gaps. Costs nothing for boundaries that are far apart.
+ * accuracy down to tiny gaps. Costs nothing for boundaries that are far apart. UNSUPPORTED in archives for
+ * microcontrollers, unless they were built with the feature near.
  */
 #define NEKTON_QUADRATURE_GRADED 0
 

@@ -1,6 +1,8 @@
 //! How fast nekton is: stages, whole evaluations, and both beside OpenBLAS's factorization.
 
+pub mod counted;
 pub mod lapack;
+pub mod passing;
 pub mod rows;
 pub mod scenes;
 pub mod timing;

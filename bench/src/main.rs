@@ -1,11 +1,12 @@
 //! `cargo xtask bench`: the ratios that nekton is held to.
 
-use nekton::scene::Quadrature;
+use nekton_bench::counted::{COUNTED, PORTABLE};
 use nekton_bench::lapack::Lapack;
-use nekton_bench::rows::{Row, ellipses, rows};
+use nekton_bench::passing::{Point, Scheme, points};
+use nekton_bench::rows::{Held, Row, rows};
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: nekton-bench table | guard | repeat NODES COLUMNS CALLS";
+const USAGE: &str = "usage: nekton-bench table | guard | counted | repeat NAME CALLS";
 
 /// A value may leave what it must be by this much before the guard complains, and only if it does so each time.
 const SLACK: f64 = 1.15;
@@ -17,13 +18,21 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["table"] => with_lapack(table),
         ["guard"] => with_lapack(guard),
+        // What can be repeated, and how often that pays.
+        ["counted"] => {
+            let own = |name: &str| !cfg!(nekton_portable) || name == PORTABLE;
+            COUNTED.iter().filter(|(name, ..)| own(name)).for_each(|(name, calls, _)| println!("{name},{calls}"));
+            ExitCode::SUCCESS
+        }
         // For profilers and counters of instructions: nothing but evaluations.
-        ["repeat", nodes, columns, calls] => {
-            let number = |word: &str| word.parse::<usize>().unwrap_or(1);
-            let mut evaluation = ellipses(number(columns), 2, 1.0, number(nodes), Quadrature::Plain);
-            for _ in 0..number(calls) {
-                evaluation.run();
-            }
+        ["repeat", name, calls] => {
+            let (Some((_, _, make)), Ok(calls)) = (COUNTED.iter().find(|c| c.0 == *name), calls.parse::<usize>())
+            else {
+                eprintln!("{USAGE}");
+                return ExitCode::from(2);
+            };
+            let mut call = make();
+            (0..calls).for_each(|_| call());
             ExitCode::SUCCESS
         }
         _ => {
@@ -43,12 +52,26 @@ fn with_lapack(run: fn(&Lapack) -> ExitCode) -> ExitCode {
     }
 }
 
-/// Every row, as CSV.
+/// Every row, as CSV; then, behind an empty line, the runs of the paper's example. Progress goes to the other stream.
 fn table(lapack: &Lapack) -> ExitCode {
     println!("# {}", lapack.name);
     println!("{}", Row::HEAD);
-    for row in rows() {
-        println!("{}", row.line(&row.measure(lapack)));
+    let rows = rows();
+    for (k, row) in rows.iter().enumerate() {
+        eprintln!("{} of {}: {} ({})", k + 1, rows.len(), row.name, row.size);
+        let measured = row.measure(lapack);
+        match &measured {
+            Ok(m) => eprintln!("  {:.3e}, must be {}", m.ratio, row.must),
+            Err(why) => eprintln!("  NOT MEASURED: {why}"),
+        }
+        println!("{}", row.line(&measured));
+    }
+    if cfg!(nekton_portable) {
+        return ExitCode::SUCCESS;
+    }
+    println!("\n{}", Point::HEAD);
+    for scheme in [Scheme::Nekton, Scheme::Plain, Scheme::Octave] {
+        points(scheme).iter().flatten().for_each(|point| println!("{}", point.line()));
     }
     ExitCode::SUCCESS
 }
@@ -56,7 +79,7 @@ fn table(lapack: &Lapack) -> ExitCode {
 /// Fails when a value is too large in every repeat.
 fn guard(lapack: &Lapack) -> ExitCode {
     let mut failed = false;
-    for row in rows().iter().filter(|row| row.guarded) {
+    for row in rows().iter().filter(|row| row.held == Held::Yes) {
         let mut best = f64::INFINITY;
         for _ in 0..REPEATS {
             match row.measure(lapack) {

@@ -15,7 +15,7 @@ pub fn median(mut x: Vec<f64>) -> f64 {
 }
 
 /// Seconds that this thread has run.
-fn thread_seconds() -> f64 {
+pub fn thread_seconds() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
     // SAFETY: the pointer is good; the clock exists on every Unix that Rust's std runs on.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };

@@ -10,7 +10,7 @@ use crate::curve::{Curve, Outline, OutlineView};
 use crate::grading::Ladder;
 use crate::lu::{Factors, Machine, factor};
 use crate::near::preimage::{Source, Targets};
-use crate::near::{Preimage, pole};
+use crate::near::{self, Preimage, pole};
 use crate::scalar::{Complex, Real, complex, dot};
 use crate::se2::Pose;
 use crate::status::{Place, Result, Status};
@@ -176,7 +176,7 @@ impl<R: Real> BoundaryRecord<R> {
     }
     /// Cosines and sines of the pole terms (empty for the plain rule).
     pub(crate) fn table<'a>(&self, store: &'a [R]) -> &'a [R] {
-        part(store, self.table_at, self.table_len)
+        if near::HERE { part(store, self.table_at, self.table_len) } else { &[] }
     }
     /// The boundary with its own nodes as the source of poles.
     pub(crate) fn source<'a>(&'a self, store: &'a [R]) -> Source<'a, R> {
@@ -267,7 +267,7 @@ pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R
     record.spacing = speed * R::TAU / R::count(n.max(1));
     // The outline may bulge beyond its nodes by at most half a spacing.
     record.reach = reach + record.spacing * R::HALF;
-    if record.table_len > 0 {
+    if near::HERE && record.table_len > 0 {
         pole::fill_table(n, part_mut(store, record.table_at, record.table_len));
     }
     if reach.is_finite() && speed.is_finite() { Ok(()) } else { Err(Status::NotFinite.into()) }
@@ -348,7 +348,7 @@ pub(crate) fn add_flank_terms<R: Real>(
     matrix: &mut Block<'_, R>,
     regular: &mut Block<'_, R>,
 ) {
-    if source.table.is_empty() {
+    if !near::HERE || source.table.is_empty() {
         return;
     }
     let (turn, shift) = (complex(R::one(), R::zero()), Complex::default());
@@ -375,7 +375,7 @@ pub(crate) fn fill_rotation_potential<R: Real>(
         let pivots = take(&mut rest, m)?;
         let data = take(&mut rest, 7 * m)?;
         let table = take(&mut rest, if record.table_len > 0 { 4 * m } else { 0 })?;
-        if !table.is_empty() {
+        if near::HERE && !table.is_empty() {
             pole::fill_table(m, table);
         }
         let view = record.view(store);

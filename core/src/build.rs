@@ -47,7 +47,7 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         }
         let own = part_mut(store, record.store_at, record.store_len);
         (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
-        if traits.graded {
+        if near::HERE && traits.graded {
             list_ladders(record, &item.shape, store).map_err(here)?;
         }
         let own = part(store, record.store_at, record.store_len);

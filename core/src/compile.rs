@@ -4,6 +4,7 @@ use crate::boundary::BoundaryRecord;
 use crate::build::{build_boundaries, build_coordinates, build_links, grade_walls};
 use crate::layout::{Layout, Traits, each_link, items, lay_out, motions, wall_count};
 use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead, NearDims};
+use crate::near;
 use crate::plan::Plan;
 use crate::scalar::Real;
 use crate::scene::{CirculationModel, Description};
@@ -94,11 +95,11 @@ impl<'a, R: Real> Model<'a, R> {
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
-        if layout.close_range_len > 0 {
+        if near::HERE && layout.close_range_len > 0 {
             let tables = part_mut(store, layout.close_range_at, layout.close_range_len);
             crate::forces::close_range::fill_tables(tables, scratch)?;
         }
-        if traits.graded && head.plan.walls > 1 {
+        if near::HERE && traits.graded && head.plan.walls > 1 {
             let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
             grade_walls(walls, store, scratch)?;
         }

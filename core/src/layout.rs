@@ -4,7 +4,7 @@ use crate::boundary::{BoundaryRecord, modes_len, potential_scratch};
 use crate::forces::close_range;
 use crate::grading::grading_len;
 use crate::model::Formulation;
-use crate::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
+use crate::near::{self, LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
 use crate::resolve::target;
 use crate::scalar::Real;
 use crate::scene::{Description, Drive, Link, Mass, Quadrature, Root, Shape, Signal};
@@ -263,7 +263,7 @@ impl Traits {
             Formulation::Velocity
         };
         let repels = settings.repulsion.is_some_and(|r| r.epsilon != R::zero());
-        let tables = settings.quadrature == Quadrature::Graded && (fluid || repels);
+        let tables = near::HERE && settings.quadrature == Quadrature::Graded && (fluid || repels);
         let graded = tables && wall_count(scene) + links > 1;
         Traits { fluid, circulation, formulation, graded, tables, repels }
     }

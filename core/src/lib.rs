@@ -76,6 +76,9 @@ pub mod scene;
 pub mod se2;
 pub(crate) mod signal;
 pub mod sim;
+#[cfg(feature = "bench")]
+#[doc(hidden)]
+pub mod stages;
 pub mod status;
 mod stepping;
 mod validate;

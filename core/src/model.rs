@@ -216,7 +216,8 @@ impl<'a, R: Real> Model<'a, R> {
     }
     /// Tables of nodes for points close to an outline (empty: plain rule or no repulsion).
     pub(crate) fn close_range(&self) -> &'a [R] {
-        crate::workspace::part(self.store, self.head.close_range_at, self.head.close_range_len)
+        let len = if crate::near::HERE { self.head.close_range_len } else { 0 };
+        crate::workspace::part(self.store, self.head.close_range_at, len)
     }
     pub(crate) fn joints(&self) -> impl Iterator<Item = &'a CoordinateRecord<R>> + use<'a, R> {
         self.coordinates.iter().filter(|c| c.component == 3)

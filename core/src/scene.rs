@@ -116,7 +116,8 @@ pub enum ForceFormula {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quadrature {
     /// Nodes crowd where boundaries face each other, and the pole of the kernel beside a boundary is integrated in closed
-    /// form: spectral accuracy down to tiny gaps. Costs nothing for pairs that are far apart.
+    /// form: spectral accuracy down to tiny gaps. Costs nothing for pairs that are far apart. Needs the feature `near`, which
+    /// `std` includes; without it a scene that asks for it is refused as `Unsupported`.
     #[default]
     Graded,
     /// Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed.

@@ -2,7 +2,7 @@
 
 use crate::layout::{each_link, items};
 use crate::scalar::Real;
-use crate::scene::{Description, Drive, JointKind, Link, Mass};
+use crate::scene::{Description, Drive, JointKind, Link, Mass, Quadrature};
 use crate::status::{Error, Place, Result, Status};
 
 /// Most nodes allowed on one boundary.
@@ -19,6 +19,9 @@ fn at_least_zero<R: Real>(what: &'static str, x: R) -> Result<()> {
 
 pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
     let settings = scene.settings();
+    if !crate::near::HERE && settings.quadrature == Quadrature::Graded {
+        return Err(Error::new(Status::Unsupported).of("quadrature", f64::NAN));
+    }
     at_least_zero("density", settings.fluid_density)?;
     finite("gravity", settings.gravity)?;
     if let Some(r) = settings.repulsion {

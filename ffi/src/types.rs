@@ -217,7 +217,8 @@ pub const NEKTON_FORCE_EXACT_GRADIENT: i32 = 0;
 pub const NEKTON_FORCE_BOUNDARY: i32 = 1;
 
 /// Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
-/// accuracy down to tiny gaps. Costs nothing for boundaries that are far apart.
+/// accuracy down to tiny gaps. Costs nothing for boundaries that are far apart. UNSUPPORTED in archives for
+/// microcontrollers, unless they were built with the feature near.
 pub const NEKTON_QUADRATURE_GRADED: i32 = 0;
 /// Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed.
 pub const NEKTON_QUADRATURE_PLAIN: i32 = 1;

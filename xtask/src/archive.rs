@@ -23,10 +23,13 @@ pub struct Machine {
     pub tools: &'static str,
     /// Their name of its object files.
     pub format: &'static str,
+    /// Features that the archive has beyond the least.
+    pub features: &'static str,
 }
 
-/// This computer, without its operating system.
-pub const HERE: Machine = Machine { folder: "freestanding", target: None, tools: "", format: FORMAT };
+/// This computer, without its operating system; with every feature, so that the proofs are about all code.
+pub const HERE: Machine =
+    Machine { folder: "freestanding", target: None, tools: "", format: FORMAT, features: "near,implicit" };
 const FORMAT: &str = if cfg!(target_arch = "aarch64") { "elf64-littleaarch64" } else { "elf64-x86-64" };
 
 impl Machine {
@@ -42,15 +45,23 @@ impl Machine {
 
 /// Builds the archive without std, without heap and without a panic handler of its own.
 pub fn build(machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> {
-    let mut command = cargo(&["rustc", "--quiet", "--package", "nekton-ffi", "--lib", "--crate-type", "staticlib"]);
+    build_package("nekton-ffi", machine, compiler)
+}
+
+/// An archive of one of the packages that can do without std.
+pub fn build_package(package: &str, machine: &Machine, compiler: &Compiler) -> Result<PathBuf, String> {
+    let mut command = cargo(&["rustc", "--quiet", "--package", package, "--lib", "--crate-type", "staticlib"]);
     command.args(["--no-default-features", "--profile", "embedded", "--target-dir"]).arg(machine.place());
     let mut folder = machine.place();
+    if !machine.features.is_empty() {
+        command.args(["--features", machine.features]);
+    }
     if let Some((target, processor)) = machine.target {
         command.args(["--target", target]).env("RUSTFLAGS", format!("-Ctarget-cpu={processor}"));
         folder.push(target);
     }
     ask(compiler.used_by(&mut command))?;
-    Ok(folder.join("embedded/libnekton_ffi.a"))
+    Ok(folder.join(format!("embedded/lib{}.a", package.replace('-', "_"))))
 }
 
 /// Symbols of an object or archive of which `nm` says one of these letters.

@@ -1,22 +1,32 @@
-//! `cargo xtask bench`: the comparison with LAPACK, and the guards of speed.
+//! `cargo xtask bench`: the comparison with LAPACK and with the paper's algorithm, and the guard of speed.
 
+use crate::firmware;
+use crate::speed;
 use crate::steps::{Outcome, ask, cargo, execute, output, read, require, root};
-use std::process::{Command, ExitCode};
+use std::path::PathBuf;
+use std::process::{Command, ExitCode, Stdio};
 
-const TABLE: &str = "docs/bench/ratios.csv";
-const COUNTS: &str = "docs/bench/instructions.csv";
-/// Nodes per body, columns of bodies (two rows), evaluations of the longer of two runs.
-const COUNTED: [(u32, u32, u32); 3] = [(16, 2, 40), (32, 2, 20), (64, 2, 4)];
-/// Relative change of a count that is let pass.
-const SLACK: f64 = 0.1;
+/// Measured ratios.
+pub const TABLE: &str = "docs/bench/ratios.csv";
+/// Error against time of the paper's example.
+pub const PASSING: &str = "docs/bench/passing.csv";
 
-fn bench(word: &str) -> Command {
-    cargo(&["run", "--release", "--quiet", "--package", "nekton-bench", "--", word])
+/// The benchmark program as usual, and built as for a machine of which nothing is known.
+pub fn programs() -> [PathBuf; 2] {
+    ["target", "target/portable"].map(|folder| root().join(folder).join("release/nekton-bench"))
 }
 
-/// Measures everything and writes the table.
-pub fn run() -> ExitCode {
-    match ask(&mut bench("table")).and_then(write) {
+/// Builds both.
+pub fn build() -> Result<(), String> {
+    let arguments = ["build", "--release", "--quiet", "--package", "nekton-bench", "--bins"];
+    ask(&mut cargo(&arguments))?;
+    let mut portable = cargo(&arguments);
+    portable.arg("--target-dir").arg(root().join("target/portable"));
+    ask(portable.env("RUSTFLAGS", "--cfg nekton_portable")).map(|_| ())
+}
+
+fn finish(done: Result<(), String>) -> ExitCode {
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
             eprintln!("{why}");
@@ -25,9 +35,50 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn write(table: String) -> Result<(), String> {
+/// Measures everything, and writes tables and plots.
+pub fn run() -> ExitCode {
+    finish(measure().and_then(|()| speed::write()))
+}
+
+/// Tables and plots of what is measured already.
+pub fn tables() -> ExitCode {
+    finish(speed::write())
+}
+
+/// What a command prints, its progress shown.
+fn listen(command: &mut Command) -> Result<String, String> {
+    let done = command.stderr(Stdio::inherit()).output().map_err(|error| format!("{command:?}: {error}"))?;
+    let text = String::from_utf8_lossy(&done.stdout).into_owned();
+    if done.status.success() { Ok(text) } else { Err(format!("{command:?}: {}", done.status)) }
+}
+
+fn measure() -> Result<(), String> {
+    if let Err(why) = require(&[("octave-cli", "octave")]) {
+        eprintln!("SKIPPED: the comparison with Octave: {why}");
+    }
+    eprintln!("building");
+    build()?;
+    let [usual, portable] = programs();
+    let printed = listen(Command::new(usual).arg("table"))?;
+    let (ratios, passing) = printed.split_once("\n\n").ok_or("the table is cut off")?;
+    let without = listen(Command::new(portable).arg("table"))?;
+    eprintln!("microcontrollers");
+    let embedded = on_microcontrollers();
+    embedded.lines().for_each(|line| eprintln!("  {line}"));
+    let portable_rows: String = without.lines().skip(2).map(|line| format!("{line}\n")).collect();
+    let how = how();
+    put(TABLE, &format!("{how}{ratios}\n{portable_rows}{embedded}"))?;
+    put(PASSING, &format!("{how}{passing}"))
+}
+
+fn put(file: &str, text: &str) -> Result<(), String> {
+    std::fs::write(root().join(file), text).map_err(|error| format!("{file}: {error}"))
+}
+
+/// Date, commit, machine, compiler.
+fn how() -> String {
     let date = output("date", &["-u", "+%Y-%m-%d"]).unwrap_or_default();
-    let commit = output("git", &["rev-parse", "--short", "HEAD"]).unwrap_or_default();
+    let commit = output("git", &["describe", "--always", "--dirty"]).unwrap_or_default();
     let machine = read("/proc/cpuinfo".as_ref()).unwrap_or_default();
     let machine = machine
         .lines()
@@ -36,84 +87,38 @@ fn write(table: String) -> Result<(), String> {
         .trim_start_matches(['\t', ' ', ':']);
     let compiler = output("rustc", &["--version"]).unwrap_or_default();
     let compiler = compiler.split(" (").next().unwrap_or("");
-    let text = format!("# {date}, commit {commit}, {machine}, {compiler}\n{table}");
-    print!("{text}");
-    let path = root().join(TABLE);
-    std::fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(|error| error.to_string())?;
-    std::fs::write(path, text).map_err(|error| format!("{TABLE}: {error}"))
+    format!("# {date}, commit {commit}, {machine}, {compiler}\n")
 }
 
-/// Instructions of one evaluation, counted by callgrind, for each size. Callgrind shows programs a processor with AVX2 and
-/// without AVX-512, whatever the machine has.
-fn counts() -> Result<Vec<(String, f64)>, String> {
-    require(&[("valgrind", "valgrind")])?;
-    ask(&mut cargo(&["build", "--release", "--quiet", "--package", "nekton-bench"]))?;
-    let folder = root().join("target/callgrind");
-    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
-    let total = |nodes: u32, columns: u32, calls: u32| -> Result<f64, String> {
-        let file = folder.join("out");
-        let mut count = Command::new("valgrind");
-        count.args(["--tool=callgrind", "--quiet"]).arg(format!("--callgrind-out-file={}", file.display()));
-        count.arg(root().join("target/release/nekton-bench"));
-        ask(count.args(["repeat".to_string(), nodes.to_string(), columns.to_string(), calls.to_string()]))?;
-        let text = read(&file)?;
-        let line = text.lines().find_map(|line| line.strip_prefix("totals: ").or(line.strip_prefix("summary: ")));
-        line.and_then(|n| n.trim().parse().ok()).ok_or_else(|| "callgrind wrote no total".to_string())
-    };
-    let count = |&(nodes, columns, calls): &(u32, u32, u32)| {
-        let one = (total(nodes, columns, calls)? - total(nodes, columns, 0)?) / f64::from(calls);
-        Ok((format!("{} bodies of {nodes} nodes", 2 * columns), one))
-    };
-    COUNTED.iter().map(count).collect()
-}
-
-/// `cargo xtask bench-counts`: writes the counts that the guard expects.
-pub fn write_counts() -> ExitCode {
-    let written = counts().and_then(|counts| {
-        let rows: String = counts.iter().map(|(name, count)| format!("{name},{count:.0}\n")).collect();
-        print!("{rows}");
-        let path = root().join(COUNTS);
-        std::fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(|error| error.to_string())?;
-        std::fs::write(path, format!("scene,instructions_per_evaluation\n{rows}")).map_err(|error| error.to_string())
-    });
-    match written {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
-            eprintln!("{why}");
-            ExitCode::FAILURE
-        }
-    }
-}
-
-/// A step of the whole test run: instructions per evaluation have not grown.
-pub fn held() -> Outcome {
-    let expected = match read(&root().join(COUNTS)) {
-        Ok(text) => text,
-        Err(why) => return Outcome::Failed(why),
-    };
-    let counts = match counts() {
+/// Rows of the table, of counts instead of times.
+fn on_microcontrollers() -> String {
+    let counts = match firmware::counts() {
         Ok(counts) => counts,
-        Err(why) => return Outcome::Skipped(why),
-    };
-    for (name, count) in counts {
-        let old = expected.lines().find_map(|line| line.strip_prefix(&format!("{name},"))).unwrap_or("");
-        let old: f64 = old.parse().unwrap_or(f64::NAN);
-        println!("{name}: {count:.0} instructions, {old:.0} expected");
-        // Written so that a missing line fails.
-        let close = (count - old).abs() <= SLACK * old;
-        if !close {
-            return Outcome::Failed(format!(
-                "{name}: {count:.0} instructions instead of {old:.0} (cargo xtask bench-counts)"
-            ));
+        Err(why) => {
+            eprintln!("SKIPPED: counts on microcontrollers: {why}");
+            return String::new();
         }
+    };
+    let mut text = String::new();
+    for c in &counts {
+        let value = c.evaluation / 1e6;
+        let name = format!("{} {}: 10⁶ instructions of an evaluation", c.processor, c.precision);
+        text += &format!("{name},48,{value:.3e},,,,,swimmer of 3 links of 16 nodes; QEMU\n");
     }
-    Outcome::Passed
+    for c in &counts {
+        let value = c.per_multiply_add;
+        let name = format!("{} {}: instructions per multiply-add of the LU", c.processor, c.precision);
+        text += &format!("{name},48,{value:.3e},5,3.5,,,QEMU\n");
+    }
+    text
 }
 
-/// `cargo xtask bench-guard`: ratios against LAPACK that must hold.
+/// `cargo xtask bench-guard`: ratios that must hold.
 pub fn guard() -> ExitCode {
-    match execute(&mut bench("guard")) {
-        Outcome::Passed => ExitCode::SUCCESS,
-        _ => ExitCode::FAILURE,
+    let passed = |program: &PathBuf| matches!(execute(Command::new(program).arg("guard")), Outcome::Passed);
+    match build() {
+        Ok(()) if programs().iter().filter(|program| !passed(program)).count() == 0 => ExitCode::SUCCESS,
+        Ok(()) => ExitCode::FAILURE,
+        Err(why) => finish(Err(why)),
     }
 }

@@ -1,6 +1,6 @@
 //! The programs without an operating system: built, run, compared with the same program on this computer, and measured.
 
-use crate::archive::{HERE, Machine, finish, proven};
+use crate::archive::{HERE, Machine, build_package, finish, proven};
 use crate::bare::{CORTEX_M, Compiler, compiler};
 use crate::steps::{Outcome, ask, cargo, output, require, root};
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ struct Board {
 
 const fn cortex(processor: &'static str) -> Machine {
     let target = Some((CORTEX_M, processor));
-    Machine { folder: processor, target, tools: "arm-none-eabi-", format: "elf32-littlearm" }
+    Machine { folder: processor, target, tools: "arm-none-eabi-", format: "elf32-littlearm", features: "" }
 }
 
 const BOARDS: [Board; 2] = [
@@ -145,6 +145,22 @@ pub fn freestanding() -> Result<(), String> {
 type Figures = Vec<String>;
 
 impl Board {
+    /// Links a program with an archive, runs it, and reads what it prints.
+    fn print(&self, program: &Path, main: &[PathBuf], archive: &Path, option: &str) -> Result<Printed, String> {
+        let (_, processor) = self.machine.target.unwrap_or_default();
+        let mut link = self.machine.tool("gcc");
+        link.args([format!("-mcpu={processor}"), format!("-mfpu={}", self.floating_point)]);
+        link.args(["-mthumb", "-mfloat-abi=hard", "-Os", option, "-ffunction-sections", "-fdata-sections"]);
+        link.args(WARNINGS).args(main).args(sources("firmware", &["board.c"])).arg(archive).arg("-T");
+        link.args(sources("firmware", &["firmware.ld"])).args(["-nostartfiles", "--specs=nano.specs"]);
+        ask(link.args(["-Wl,--gc-sections", "-o"]).arg(program))?;
+        let mut emulate = Command::new("timeout");
+        emulate.args(["300", "qemu-system-arm", "-M", self.emulated, "-icount", "shift=0", "-display", "none"]);
+        emulate.args(["-serial", "null", "-monitor", "none", "-chardev", "stdio,id=out", "-semihosting-config"]);
+        emulate.args(["enable=on,target=native,chardev=out", "-kernel"]);
+        Printed::of(&ask(emulate.arg(program))?)
+    }
+
     fn measure(&self, compiler: &Compiler) -> Result<Vec<Figures>, String> {
         let prelinked = proven(&self.machine, compiler)?;
         PRECISIONS.iter().map(|p| self.run(&prelinked.archive, p)).collect()
@@ -152,18 +168,7 @@ impl Board {
 
     fn run(&self, archive: &Path, &(precision, option, allowed): &(&str, &str, f64)) -> Result<Figures, String> {
         let program = self.machine.place().join(format!("{precision}.elf"));
-        let (_, processor) = self.machine.target.unwrap_or_default();
-        let mut link = self.machine.tool("gcc");
-        link.args([format!("-mcpu={processor}"), format!("-mfpu={}", self.floating_point)]);
-        link.args(["-mthumb", "-mfloat-abi=hard", "-Os", option, "-ffunction-sections", "-fdata-sections"]);
-        link.args(WARNINGS).args(sources("firmware", &["main.c", "board.c"])).arg(archive).arg("-T");
-        link.args(sources("firmware", &["firmware.ld"])).args(["-nostartfiles", "--specs=nano.specs"]);
-        ask(link.args(["-Wl,--gc-sections", "-o"]).arg(&program))?;
-        let mut emulate = Command::new("timeout");
-        emulate.args(["300", "qemu-system-arm", "-M", self.emulated, "-icount", "shift=0", "-display", "none"]);
-        emulate.args(["-serial", "null", "-monitor", "none", "-chardev", "stdio,id=out", "-semihosting-config"]);
-        emulate.args(["enable=on,target=native,chardev=out", "-kernel"]);
-        let printed = Printed::of(&ask(emulate.arg(&program))?)?;
+        let printed = self.print(&program, &sources("firmware", &["main.c"]), archive, option)?;
         compare(precision, &printed, &on_desktop(precision, option)?, allowed)?;
 
         // Second line: text, data, bss.
@@ -185,6 +190,44 @@ impl Board {
         let names = [self.name.to_string(), precision.to_string()];
         Ok(names.into_iter().chain(figures.map(|f| f.to_string())).collect())
     }
+}
+
+/// Instructions of one evaluation of the swimmer, and of the factorization alone for each of its multiply-adds.
+pub struct Counted {
+    pub processor: &'static str,
+    pub precision: &'static str,
+    pub evaluation: f64,
+    pub per_multiply_add: f64,
+}
+
+/// Counts on every board, in every precision that its processor computes itself. Cost: a build and six runs.
+pub fn counts() -> Result<Vec<Counted>, String> {
+    require(&PROGRAMS)?;
+    let compiler = compiler(CORTEX_M)?;
+    let mut all = Vec::new();
+    for board in &BOARDS {
+        let whole = build_package("nekton-ffi", &board.machine, &compiler)?;
+        let lu = build_package("nekton-bench-bare", &board.machine, &compiler)?;
+        for (precision, option, _) in PRECISIONS {
+            if precision == "f64" && board.floating_point == "fpv4-sp-d16" {
+                continue;
+            }
+            let run = |source: &str, archive: &Path| {
+                let program = board.machine.place().join(format!("{source}-{precision}.elf"));
+                let source = root().join("bench/bare").join(source);
+                board.print(&program, &[source], archive, option)
+            };
+            let instructions = |ticks: u64| (ticks * INSTRUCTIONS_PER_TICK) as f64;
+            let (evaluation, lu) = (run("evaluation.c", &whole)?, run("lu.c", &lu)?);
+            all.push(Counted {
+                processor: board.name,
+                precision,
+                evaluation: instructions(evaluation.number("evaluation ticks")),
+                per_multiply_add: instructions(lu.number("lu ticks")) / lu.number("multiply adds") as f64,
+            });
+        }
+    }
+    Ok(all)
 }
 
 const PROGRAMS: [(&str, &str); 4] = [

@@ -4,11 +4,13 @@ mod archive;
 mod bare;
 mod bench;
 mod c;
+mod counts;
 mod dist;
 mod expected;
 mod firmware;
 mod fuzz;
 mod header;
+mod speed;
 mod steps;
 mod test;
 mod trade;
@@ -22,11 +24,13 @@ commands:
   test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
-  bench      docs/bench/ratios.csv: speed beside OpenBLAS's factorization
+  bench [--tables]
+             docs/bench: speed beside OpenBLAS's factorization and the paper's algorithm, its plots, and the tables in
+             README.md and docs/design.md (4 minutes; --tables: only what is measured already)
   bench-guard
              fails when one of those ratios is too large
   bench-counts
-             docs/bench/instructions.csv: instructions per evaluation, which the test run holds
+             docs/bench/instructions.csv: counted instructions, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
   symbols    include/nekton.symbols from ffi/src
@@ -47,8 +51,9 @@ fn main() -> ExitCode {
     match words.as_slice() {
         ["test"] => test::run(),
         ["bench"] => bench::run(),
+        ["bench", "--tables"] => bench::tables(),
         ["bench-guard"] => bench::guard(),
-        ["bench-counts"] => bench::write_counts(),
+        ["bench-counts"] => counts::write(),
         ["firmware"] => firmware::run(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
         ["prelink"] => archive::write_prelinked(),

@@ -26,6 +26,10 @@ pub fn run() -> ExitCode {
         "core without std",
         &mut cargo(&["build", "--package", "nekton", "--no-default-features", "--features", "alloc"]),
     );
+    steps.command(
+        "core without graded quadrature",
+        &mut cargo(&["test", "--package", "nekton", "--no-default-features", "--test", "without_near"]),
+    );
     steps.run("core for a bare target", bare);
     steps.run("embedded archive, program without operating system", || match firmware::freestanding() {
         Ok(()) => Outcome::Passed,
@@ -39,7 +43,7 @@ pub fn run() -> ExitCode {
         "core tests with fft",
         &mut cargo(&["test", "--package", "nekton", "--features", "fft", "--no-fail-fast"]),
     );
-    steps.run("instructions per evaluation", crate::bench::held);
+    steps.run("instructions per evaluation", crate::counts::held);
     steps.command(
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),

@@ -169,19 +169,19 @@ fn measure(traded: &[PathBuf], work: &Path, folder: &Path, few: &[&str]) -> Resu
 }
 
 /// A table without quotes.
-struct Csv {
+pub struct Csv {
     names: Vec<String>,
-    rows: Vec<Vec<String>>,
+    pub rows: Vec<Vec<String>>,
 }
 
 impl Csv {
-    fn parse(text: &str) -> Csv {
+    pub fn parse(text: &str) -> Csv {
         let cells = |line: &str| line.split(',').map(str::to_owned).collect();
         let mut lines = text.lines();
         Csv { names: lines.next().map(cells).unwrap_or_default(), rows: lines.map(cells).collect() }
     }
 
-    fn cell(&self, row: usize, name: &str) -> Result<&str> {
+    pub fn cell(&self, row: usize, name: &str) -> Result<&str> {
         let column = self.names.iter().position(|n| n == name).ok_or_else(|| format!("no column {name}"))?;
         self.rows.get(row).and_then(|r| r.get(column)).map(String::as_str).ok_or_else(|| format!("no row {row}"))
     }
@@ -214,10 +214,11 @@ fn fill(page: &str, folder: &Path) -> Result<String> {
     Ok(page)
 }
 
-fn between(page: &str, marker: &str, table: &str) -> Result<String> {
+/// Puts a table between a page's markers.
+pub fn between(page: &str, marker: &str, table: &str) -> Result<String> {
     let (begin, end) = (format!("<!-- begin {marker} -->"), format!("<!-- end {marker} -->"));
     let cut = page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
-    let (head, tail) = cut.ok_or_else(|| format!("docs/accuracy.md: no {begin} … {end}"))?;
+    let (head, tail) = cut.ok_or_else(|| format!("no {begin} … {end}"))?;
     Ok(format!("{head}{begin}\n{table}{end}{tail}"))
 }
 

@@ -78,7 +78,8 @@ impl<R: Real> Grading<'_, R> {
         let step = R::TAU / R::count(n.max(1));
         let mut last = [R::zero(), R::zero()];
         for first in (0..n).step_by(LANES) {
-            let mut chunk = Chunk { t: [R::zero(); LANES], slope: [R::one(); LANES], bend: [R::zero(); LANES], settled: false };
+            let mut chunk =
+                Chunk { t: [R::zero(); LANES], slope: [R::one(); LANES], bend: [R::zero(); LANES], settled: false };
             let s = core::array::from_fn(|i| step * R::count(first + i));
             Machine::here().run(Place { grading: self, s, start: last, out: &mut chunk });
             if first == 0 {
@@ -177,7 +178,8 @@ impl<R: Real> Task for Place<'_, '_, R> {
             let (mut strict, mut wide) = (R::zero(), R::zero());
             for i in 0..LANES {
                 let f = (jets.value[i] - s[i]).abs();
-                let (one, all) = (R::TWO + jets.slope[i] * out.t[i] * R::HALF, R::lit(450.0) + R::lit(9.0) * jets.slope[i]);
+                let (one, all) =
+                    (R::TWO + jets.slope[i] * out.t[i] * R::HALF, R::lit(450.0) + R::lit(9.0) * jets.slope[i]);
                 let (one, all) = (f / one, f / all);
                 strict = if one > strict { one } else { strict };
                 wide = if all > wide { all } else { wide };

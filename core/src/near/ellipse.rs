@@ -212,4 +212,3 @@ fn nearest<R: Real>(nodes: &[R], t: R) -> usize {
     let gap = |k: usize| wrapped(at(nodes, k) - t).abs();
     if gap(before) < gap(after) { before } else { after }
 }
-

@@ -91,7 +91,13 @@ pub(crate) struct RowOf<'a, R> {
 
 /// Adds the real and the imaginary parts of a row of terms of W_ik, one for every node of the source; nothing to empty memory.
 #[inline]
-pub(crate) fn add_weights<R: Real>(machine: Machine, pre: &Preimage<R>, table: &[R], nodes: usize, [re, im]: [RowOf<'_, R>; 2]) {
+pub(crate) fn add_weights<R: Real>(
+    machine: Machine,
+    pre: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    [re, im]: [RowOf<'_, R>; 2],
+) {
     let (cos, sin) = turned(table, nodes, pre.node);
     let row = Row::of(pre, nodes);
     machine.run(Weights { row, cos, sin, out: im, turn: complex(R::zero(), R::one()) });

@@ -99,7 +99,8 @@ impl<R: Real, const L: usize> Completed<R, L> {
     /// One of them; `None` where the pole term is lost in rounding.
     #[inline]
     pub(crate) fn get(&self, i: usize, nodes: usize) -> Option<Preimage<R>> {
-        let [tangent, factor, rate] = [&self.tangent, &self.factor, &self.rate].map(|z| complex(at(&z[0], i), at(&z[1], i)));
+        let [tangent, factor, rate] =
+            [&self.tangent, &self.factor, &self.rate].map(|z| complex(at(&z[0], i), at(&z[1], i)));
         let (height, node) = (at(&self.height, i), self.node.get(i).copied()?);
         let exponent = R::count(nodes) * height.abs() * R::HALF;
         let near = exponent < reach() && height != R::zero() && rate.re.is_finite() && rate.im.is_finite();
@@ -202,7 +203,11 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
                 rows.fill(R::zero());
                 continue;
             }
-            let (turn, shift) = if i == j { (complex(R::one(), R::zero()), Complex::default()) } else { relative(c.pose(i), c.pose(j)) };
+            let (turn, shift) = if i == j {
+                (complex(R::one(), R::zero()), Complex::default())
+            } else {
+                relative(c.pose(i), c.pose(j))
+            };
             rows.fill(R::zero());
             let targets = Targets { nodes: points, turn, shift, own: i == j };
             source.each_preimage(&targets, |row, p| {

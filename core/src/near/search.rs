@@ -130,7 +130,12 @@ impl<R: Real> Source<'_, R> {
     #[inline(always)]
     fn columns(&self, first: usize) -> [[R; LANES]; 4] {
         let n = &self.nodes;
-        [load(n.x, first, R::MAX.sqrt() * R::lit(1e-3)), load(n.y, first, R::zero()), load(n.dx, first, R::zero()), load(n.dy, first, R::zero())]
+        [
+            load(n.x, first, R::MAX.sqrt() * R::lit(1e-3)),
+            load(n.y, first, R::zero()),
+            load(n.dx, first, R::zero()),
+            load(n.dy, first, R::zero()),
+        ]
     }
 
     /// Γ_k − z and Γ'_k.

@@ -1,0 +1,49 @@
+//! Parts of an evaluation by themselves, for benchmarks (feature `bench`). Each does again what the last evaluation did.
+
+use crate::configuration::{Configuration, Poses};
+use crate::near::Near;
+use crate::nystrom::assemble;
+use crate::potentials::BoundarySystem;
+use crate::scalar::Real;
+use crate::sim::{Sim, split_state};
+use crate::status::Result;
+use crate::work::{configuration, system};
+
+/// A part.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Stage {
+    /// Kinematics, and whether anything touches.
+    Place,
+    /// Ladders, nodes, preimages.
+    Grade,
+    /// The boundary system's matrix.
+    Assemble,
+    /// The same with right-hand sides, factorization, solutions and their moments.
+    Solve,
+    /// All that follows: forces and accelerations.
+    Force,
+}
+
+impl<R: Real> Sim<'_, R> {
+    /// Does a part again, after [`Sim::rhs`] at the present state.
+    ///
+    /// # Errors
+    /// As [`Sim::rhs`].
+    pub fn stage(&mut self, stage: Stage) -> Result<()> {
+        let (model, work) = (self.model, &mut self.work);
+        match stage {
+            Stage::Place => {
+                let (p, dp) = split_state(&model, self.state.y);
+                work.place(&model, self.head.time, p, dp)
+            }
+            Stage::Grade => work.grade(&model),
+            Stage::Assemble => {
+                let (model, system) = (&model, system!(work));
+                assemble(&configuration!(work, model), system.matrix, system.ld, system.regular, work.zx, work.zy);
+                Ok(())
+            }
+            Stage::Solve => work.solve_fluid(&model, &mut crate::Counters::default()),
+            Stage::Force => work.accelerate(&model, self.head.time),
+        }
+    }
+}
