@@ -300,6 +300,13 @@ classdef Nekton < handle
             r = nekton_mex('indicators', self.id);
         end
 
+        function e = timeError(self)
+        %TIMEERROR  Struct of estimated local errors of time integration since the start or the last setState: length (m), angle (rad),
+        %   speed (m/s) and spin (rad/s) of the last step, length_sum, angle_sum, speed_sum and spin_sum of all steps, and unknown, the
+        %   number of steps without estimate. NaN: no step was estimated ('gauss6' never is).
+            e = nekton_mex('time_error', self.id);
+        end
+
         function n = counters(self)
         %COUNTERS  Struct: evaluations, factorizations, steps, rejected.
             n = nekton_mex('counters', self.id);

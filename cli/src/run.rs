@@ -197,6 +197,7 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error>
         impulse,
         gap: gap.distance,
         resolution: sim.indicators()?,
+        time_error: sim.time_error(),
         torque: setup.joints.iter().map(|(core, _)| pick(core)).collect(),
     };
     Ok((row, between))
@@ -263,6 +264,17 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
         parts[2]
     );
     add("bound of the relative error in space", bound);
+    if let Some(row) = record.rows.last() {
+        let text = match (row.time_errors(), row.time_error.unknown) {
+            ([length, ..], _) if length.is_nan() => {
+                "none: this integrator has no estimate, or the run was too short".into()
+            }
+            ([length, angle, speed, spin], unknown) => format!(
+                "{length:.1e} m, {angle:.1e} rad, {speed:.1e} m/s, {spin:.1e} rad/s ({unknown} steps without estimate)"
+            ),
+        };
+        add("sum of the estimated local errors of time integration", text);
+    }
     let c = sim.counters();
     add("steps (rejected)", format!("{} ({})", c.steps, c.rejected));
     add("evaluations", c.evaluations.to_string());

@@ -402,6 +402,26 @@ pub(crate) unsafe fn resolution<R: Real>(
     }
 }
 
+pub(crate) unsafe fn time_error<R: Real>(handle: *const SimHandle<R>, out: *mut TimeErrorOut<R>) -> Outcome<Status> {
+    check_pointer("error", out.cast_const())?;
+    // SAFETY: checked above and in `sim`.
+    unsafe {
+        let e = sim(handle)?.view()?.time_error();
+        let error = TimeErrorOut {
+            length: e.length,
+            angle: e.angle,
+            speed: e.speed,
+            spin: e.spin,
+            length_sum: e.length_sum,
+            angle_sum: e.angle_sum,
+            speed_sum: e.speed_sum,
+            spin_sum: e.spin_sum,
+            unknown: e.unknown,
+        };
+        give(out, error)
+    }
+}
+
 pub(crate) unsafe fn gap<R: Real>(handle: *mut SimHandle<R>, out: *mut GapOut<R>) -> Outcome<Status> {
     check_pointer("gap", out.cast_const())?;
     // SAFETY: checked above and in `sim`.
