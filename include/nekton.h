@@ -574,7 +574,12 @@ typedef struct nekton_resolution {
     double force;
     /** Error of the constant density as a solution of the boundary system. */
     double quadrature;
-    /** Bound of the relative error of added mass and force: 100 times the largest of the three. */
+    /**
+     * Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
+     * repulsion.
+     */
+    double repulsion;
+    /** Bound of the relative error of added mass, force and repulsion: 100 times the largest of the four. */
     double bound;
 } nekton_resolution;
 
@@ -866,7 +871,12 @@ typedef struct nekton32_resolution {
     float force;
     /** Error of the constant density as a solution of the boundary system. */
     float quadrature;
-    /** Bound of the relative error of added mass and force: 100 times the largest of the three. */
+    /**
+     * Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
+     * repulsion.
+     */
+    float repulsion;
+    /** Bound of the relative error of added mass, force and repulsion: 100 times the largest of the four. */
     float bound;
 } nekton32_resolution;
 

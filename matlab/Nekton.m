@@ -290,7 +290,7 @@ classdef Nekton < handle
 
         function r = resolution(self)
         %RESOLUTION  Struct of relative error indicators of the space discretization now, from all of the added mass: mass, force,
-        %   quadrature, and bound, 100 times the largest of them.
+        %   quadrature, repulsion, and bound, 100 times the largest of them.
             r = nekton_mex('resolution', self.id);
         end
 

@@ -707,8 +707,8 @@ static void impulse(call *c)
 
 static mxArray *errors_in_space(const nekton_resolution *r)
 {
-    static const char *names[] = {"mass", "force", "quadrature", "bound"};
-    double v[] = {r->mass, r->force, r->quadrature, r->bound};
+    static const char *names[] = {"mass", "force", "quadrature", "repulsion", "bound"};
+    double v[] = {r->mass, r->force, r->quadrature, r->repulsion, r->bound};
     return record(names, v, COUNT(names));
 }
 

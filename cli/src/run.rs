@@ -256,8 +256,10 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
     }
     let worst = |part: fn(&Resolution<f64>) -> f64| record.rows.iter().map(|r| part(&r.resolution)).fold(0.0, f64::max);
     let parts = [worst(|r| r.mass), worst(|r| r.force), worst(|r| r.quadrature)];
+    let repulsion =
+        if record.terms.repulsion { format!(", repulsion {:.1e}", worst(|r| r.repulsion)) } else { String::new() };
     let bound = format!(
-        "{:.1e} (indicators: mass {:.1e}, force {:.1e}, quadrature {:.1e})",
+        "{:.1e} (indicators: mass {:.1e}, force {:.1e}, quadrature {:.1e}{repulsion})",
         worst(Resolution::bound),
         parts[0],
         parts[1],

@@ -76,7 +76,7 @@ buffers! {
         force: 3 * d.links,
         outer: 3 * d.links,
         spare: 3 * d.links,
-        indicators: 2,
+        indicators: 3,
         matrix: d.ld * (d.unknowns + d.columns),
         pivots: d.unknowns,
         regular: d.circulating * d.circulating,

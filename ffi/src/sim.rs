@@ -397,8 +397,9 @@ pub(crate) unsafe fn resolution<R: Real>(
     // SAFETY: checked above and in `sim`.
     unsafe {
         let r = question(&mut sim(handle.cast_const())?.view()?)?;
-        sound([r.mass, r.force, r.quadrature])?;
-        give(out, ResolutionOut { mass: r.mass, force: r.force, quadrature: r.quadrature, bound: r.bound() })
+        sound([r.mass, r.force, r.quadrature, r.repulsion])?;
+        let Resolution { mass, force, quadrature, repulsion } = r;
+        give(out, ResolutionOut { mass, force, quadrature, repulsion, bound: r.bound() })
     }
 }
 

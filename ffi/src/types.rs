@@ -455,7 +455,10 @@ pub struct ResolutionOut<R> {
     pub force: R,
     /// Error of the constant density as a solution of the boundary system.
     pub quadrature: R,
-    /// Bound of the relative error of added mass and force: 100 times the largest of the three.
+    /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
+    /// repulsion.
+    pub repulsion: R,
+    /// Bound of the relative error of added mass, force and repulsion: 100 times the largest of the four.
     pub bound: R,
 }
 

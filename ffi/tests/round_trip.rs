@@ -227,7 +227,7 @@ macro_rules! round_trip {
                 assert_eq!(unsafe { sim_resolution(c, resolution.as_mut_ptr(), null) }, 0);
                 let (r, resolution) = (rust.resolution().unwrap(), unsafe { resolution.assume_init() });
                 assert_eq!((r.mass, r.force, r.quadrature), (resolution.mass, resolution.force, resolution.quadrature));
-                assert_eq!(r.bound(), resolution.bound);
+                assert_eq!((r.repulsion, r.bound()), (resolution.repulsion, resolution.bound));
                 let mut error = std::mem::MaybeUninit::uninit();
                 assert_eq!(unsafe { sim_time_error(c, error.as_mut_ptr()) }, 0);
                 let (r, e) = (rust.time_error(), unsafe { error.assume_init() });

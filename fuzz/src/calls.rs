@@ -324,7 +324,8 @@ macro_rules! precision {
                         for question in [sim_resolution, sim_indicators] {
                             if check_report(question(self.sim, &mut resolution, &mut diag), &diag) {
                                 assert!(resolution.mass.is_finite() && resolution.force.is_finite());
-                                assert!(resolution.quadrature.is_finite() && resolution.bound >= R::default());
+                                assert!(resolution.quadrature.is_finite() && resolution.repulsion.is_finite());
+                                assert!(resolution.bound >= R::default());
                             }
                         }
                         if check_report(sim_gap(self.sim, &mut gap, &mut diag), &diag) {
