@@ -96,6 +96,7 @@ template <class R> struct Api;
         using LinkInfo = P##_link_info;                                                                                        \
         using Energy = P##_energy;                                                                                             \
         using Resolution = P##_resolution;                                                                                     \
+        using TimeError = P##_time_error;                                                                                      \
         using Gap = P##_gap;                                                                                                   \
         static constexpr auto scene_init = &P##_scene_def_init;                                                                \
         static constexpr auto wall_init = &P##_wall_def_init;                                                                  \
@@ -144,6 +145,7 @@ template <class R> struct Api;
         static constexpr auto sim_impulse = &P##_sim_impulse;                                                                  \
         static constexpr auto sim_indicators = &P##_sim_indicators;                                                            \
         static constexpr auto sim_resolution = &P##_sim_resolution;                                                            \
+        static constexpr auto sim_time_error = &P##_sim_time_error;                                                            \
         static constexpr auto sim_gap = &P##_sim_gap;                                                                          \
         static constexpr auto sim_counters = &P##_sim_counters;                                                                \
     }
@@ -522,6 +524,11 @@ public:
     nekton_status resolution(typename Api::Resolution &out, nekton_diag *diag = nullptr)
     {
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_resolution(sim_, &out, d); });
+    }
+    /** Estimated local errors of time integration since the start. */
+    nekton_status time_error(typename Api::TimeError &out) const
+    {
+        return detail::done(Api::sim_time_error(sim_, &out));
     }
     /** The smallest gap between boundaries of which one moves. */
     nekton_status gap(typename Api::Gap &out, nekton_diag *diag = nullptr)

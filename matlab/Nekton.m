@@ -290,7 +290,7 @@ classdef Nekton < handle
 
         function r = resolution(self)
         %RESOLUTION  Struct of relative error indicators of the space discretization now, from all of the added mass: mass, force,
-        %   quadrature, and bound, 100 times the largest of them.
+        %   quadrature, repulsion, and bound, 100 times the largest of them.
             r = nekton_mex('resolution', self.id);
         end
 
@@ -298,6 +298,13 @@ classdef Nekton < handle
         %INDICATORS  The same of the steps, the largest since the call before the last step or advance: they come at almost no
         %   cost. If the scene's run.tolerance is exceeded, step and advance warn (nekton:sim:Unresolved), once until it is met again.
             r = nekton_mex('indicators', self.id);
+        end
+
+        function e = timeError(self)
+        %TIMEERROR  Struct of estimated local errors of time integration since the start or the last setState: length (m), angle (rad),
+        %   speed (m/s) and spin (rad/s) of the last step, length_sum, angle_sum, speed_sum and spin_sum of all steps, and unknown, the
+        %   number of steps without estimate. NaN: no step was estimated ('gauss6' never is).
+            e = nekton_mex('time_error', self.id);
         end
 
         function n = counters(self)

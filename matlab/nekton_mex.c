@@ -707,8 +707,8 @@ static void impulse(call *c)
 
 static mxArray *errors_in_space(const nekton_resolution *r)
 {
-    static const char *names[] = {"mass", "force", "quadrature", "bound"};
-    double v[] = {r->mass, r->force, r->quadrature, r->bound};
+    static const char *names[] = {"mass", "force", "quadrature", "repulsion", "bound"};
+    double v[] = {r->mass, r->force, r->quadrature, r->repulsion, r->bound};
     return record(names, v, COUNT(names));
 }
 
@@ -726,6 +726,16 @@ static void indicators(call *c)
     nekton_diag diag;
     check(nekton_sim_indicators(get(c->prhs[0])->sim, &r, &diag), &diag, "sim");
     c->plhs[0] = errors_in_space(&r);
+}
+
+static void time_error(call *c)
+{
+    nekton_time_error e;
+    check(nekton_sim_time_error(get(c->prhs[0])->sim, &e), NULL, "sim");
+    static const char *names[] = {"length",     "angle",     "speed",     "spin",   "length_sum",
+                                  "angle_sum", "speed_sum", "spin_sum", "unknown"};
+    double v[] = {e.length, e.angle, e.speed, e.spin, e.length_sum, e.angle_sum, e.speed_sum, e.spin_sum, (double)e.unknown};
+    c->plhs[0] = record(names, v, COUNT(names));
 }
 
 /* The distance, and the two places as rows (kind, index, link), counted from 1. */
@@ -819,6 +829,7 @@ static const struct {
     {"impulse", impulse, 1, 1, 1},
     {"resolution", resolution, 1, 1, 1},
     {"indicators", indicators, 1, 1, 1},
+    {"time_error", time_error, 1, 1, 1},
     {"gap", gap, 1, 1, 2},
     {"counters", counters, 1, 1, 1},
     {"accelerations", accelerations, 1, 1, 1},

@@ -79,7 +79,13 @@ impl Values {
                 ("total", e.total),
                 ("work", e.work),
             ],
-            resolution: vec![("mass", r.mass), ("force", r.force), ("quadrature", r.quadrature), ("bound", r.bound())],
+            resolution: vec![
+                ("mass", r.mass),
+                ("force", r.force),
+                ("quadrature", r.quadrature),
+                ("repulsion", r.repulsion),
+                ("bound", r.bound()),
+            ],
         })
     }
 

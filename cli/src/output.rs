@@ -42,10 +42,22 @@ pub fn tables(record: &Record) -> Vec<File> {
         vec![r.t, e.kinetic_fluid, e.kinetic_bodies, e.buoyancy, e.repulsion, e.circulation, e.total, e.work]
     });
     let torques = record.rows.iter().map(|r| std::iter::once(&r.t).chain(r.torque.iter().flatten()).copied().collect());
-    let resolution = ["t", "mass", "force", "quadrature", "bound"];
+    let resolution = [
+        "t",
+        "mass",
+        "force",
+        "quadrature",
+        "repulsion",
+        "bound",
+        "time_length",
+        "time_angle",
+        "time_speed",
+        "time_spin",
+    ];
     let resolutions = record.rows.iter().map(|r| {
         let i = &r.resolution;
-        vec![r.t, i.mass, i.force, i.quadrature, i.bound()]
+        let [length, angle, speed, spin] = r.time_errors();
+        vec![r.t, i.mass, i.force, i.quadrature, i.repulsion, i.bound(), length, angle, speed, spin]
     });
     vec![
         ("trajectory.csv", table(&trajectory, trajectories)),

@@ -123,8 +123,12 @@ fn resolutions(record: &Record) -> Vec<Series> {
         line(record, "mass", colour(0), |r| power(r.resolution.mass)),
         line(record, "force", colour(1), |r| power(r.resolution.force)),
         line(record, "quadrature", colour(2), |r| power(r.resolution.quadrature)),
-        Series { thick: true, ..line(record, "bound", RGBColor(0, 0, 0), |r| power(r.resolution.bound())) },
     ];
+    if record.terms.repulsion {
+        series.push(line(record, "repulsion", colour(4), |r| power(r.resolution.repulsion)));
+    }
+    let bound = line(record, "bound", RGBColor(0, 0, 0), |r| power(r.resolution.bound()));
+    series.push(Series { thick: true, ..bound });
     if record.tolerance > 0.0 {
         series.push(line(record, "asked", colour(3), |_| power(record.tolerance)));
     }

@@ -1,6 +1,6 @@
 //! What a run leaves behind, in the user's order of links.
 
-use nekton::Resolution;
+use nekton::{Resolution, TimeError};
 
 /// Everything the tables, plots and the report are made from.
 #[derive(Debug, Default)]
@@ -78,6 +78,8 @@ pub struct Row {
     pub gap: f64,
     /// Error indicators of space, the largest since the row before.
     pub resolution: Resolution<f64>,
+    /// Estimated errors of time integration, summed since the start.
+    pub time_error: TimeError<f64>,
     /// Torque and power per joint.
     pub torque: Vec<[f64; 2]>,
 }
@@ -99,6 +101,17 @@ pub struct Energies {
     pub total: f64,
     /// Done by the joints since the start.
     pub work: f64,
+}
+
+impl Row {
+    /// Sums of the estimated local errors of time integration: lengths, angles, their rates. NaN if no step could be estimated.
+    pub fn time_errors(&self) -> [f64; 4] {
+        let e = &self.time_error;
+        if e.length.is_nan() && e.unknown > 0 {
+            return [f64::NAN; 4];
+        }
+        [e.length_sum, e.angle_sum, e.speed_sum, e.spin_sum]
+    }
 }
 
 impl Record {

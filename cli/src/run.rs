@@ -197,6 +197,7 @@ fn sample(setup: &Setup, sim: &mut Sim<'_, f64>) -> Result<(Row, String), Error>
         impulse,
         gap: gap.distance,
         resolution: sim.indicators()?,
+        time_error: sim.time_error(),
         torque: setup.joints.iter().map(|(core, _)| pick(core)).collect(),
     };
     Ok((row, between))
@@ -255,14 +256,27 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
     }
     let worst = |part: fn(&Resolution<f64>) -> f64| record.rows.iter().map(|r| part(&r.resolution)).fold(0.0, f64::max);
     let parts = [worst(|r| r.mass), worst(|r| r.force), worst(|r| r.quadrature)];
+    let repulsion =
+        if record.terms.repulsion { format!(", repulsion {:.1e}", worst(|r| r.repulsion)) } else { String::new() };
     let bound = format!(
-        "{:.1e} (indicators: mass {:.1e}, force {:.1e}, quadrature {:.1e})",
+        "{:.1e} (indicators: mass {:.1e}, force {:.1e}, quadrature {:.1e}{repulsion})",
         worst(Resolution::bound),
         parts[0],
         parts[1],
         parts[2]
     );
     add("bound of the relative error in space", bound);
+    if let Some(row) = record.rows.last() {
+        let text = match (row.time_errors(), row.time_error.unknown) {
+            ([length, ..], _) if length.is_nan() => {
+                "none: this integrator has no estimate, or the run was too short".into()
+            }
+            ([length, angle, speed, spin], unknown) => format!(
+                "{length:.1e} m, {angle:.1e} rad, {speed:.1e} m/s, {spin:.1e} rad/s ({unknown} steps without estimate)"
+            ),
+        };
+        add("sum of the estimated local errors of time integration", text);
+    }
     let c = sim.counters();
     add("steps (rejected)", format!("{} ({})", c.steps, c.rejected));
     add("evaluations", c.evaluations.to_string());

@@ -49,7 +49,10 @@ fn tables_have_the_documented_headers_and_17_digits() {
     let torque = place.read("results/torque.csv");
     assert_eq!(torque.lines().next().unwrap(), "t,fish.tail.torque,fish.tail.power");
     let resolution = place.read("results/resolution.csv");
-    assert_eq!(resolution.lines().next().unwrap(), "t,mass,force,quadrature,bound");
+    assert_eq!(
+        resolution.lines().next().unwrap(),
+        "t,mass,force,quadrature,repulsion,bound,time_length,time_angle,time_speed,time_spin"
+    );
     for table in [&trajectory, &energy, &torque, &resolution] {
         let times: Vec<f64> = rows(table).iter().map(|r| r[0]).collect();
         assert_eq!(times.len(), 6);

@@ -125,7 +125,7 @@ impl<R: Real> Work<'_, R> {
             buoyancy::add_gradient(model, c.poses, self.outer);
         }
         if let Some(law) = head.repulsion {
-            repulsion::add_gradient(c, law, self.outer);
+            put(self.indicators, 2, repulsion::add_gradient(c, law, self.outer));
         }
         self.add_circulation(model);
     }

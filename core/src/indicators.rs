@@ -28,12 +28,15 @@ pub struct Resolution<R> {
     pub force: R,
     /// Error of the constant density on the links as a solution of the boundary system.
     pub quadrature: R,
+    /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
+    /// repulsion.
+    pub repulsion: R,
 }
 
 impl<R: Real> Resolution<R> {
-    /// Bound of the relative error of added mass and force: 100 times the largest indicator.
+    /// Bound of the relative error of added mass and force, and of repulsion: 100 times the largest indicator.
     pub fn bound(&self) -> R {
-        self.mass.max(self.force).max(self.quadrature) * R::lit(100.0)
+        self.mass.max(self.force).max(self.quadrature).max(self.repulsion) * R::lit(100.0)
     }
 
     pub(crate) fn max(&self, other: &Self) -> Self {
@@ -41,6 +44,7 @@ impl<R: Real> Resolution<R> {
             mass: self.mass.max(other.mass),
             force: self.force.max(other.force),
             quadrature: self.quadrature.max(other.quadrature),
+            repulsion: self.repulsion.max(other.repulsion),
         }
     }
 }
@@ -79,7 +83,8 @@ impl<R: Real> Work<'_, R> {
         } else {
             constant_error(model, &system!(self).factors(), self.solution)
         };
-        Resolution { mass: at(self.indicators, 0), force: at(self.indicators, 1), quadrature }
+        let [mass, force, repulsion] = [0, 1, 2].map(|k| at(self.indicators, k));
+        Resolution { mass, force, quadrature, repulsion }
     }
 }
 
@@ -127,7 +132,7 @@ impl<R: Real> Sim<'_, R> {
         if model.head.plan.unknowns == 0 {
             return Ok(self.work.resolution(&model));
         }
-        let quadrature = self.work.resolution(&model).quadrature;
+        let Resolution { quadrature, repulsion, .. } = self.work.resolution(&model);
         // Force: T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l, both from one more pass.
         let w = &mut self.work;
         w.christoffel_force(&model);
@@ -158,6 +163,6 @@ impl<R: Real> Sim<'_, R> {
             (w.force, w.spare) = (column, row);
         }
         self.head.fresh = false;
-        Ok(Resolution { mass: if size > zero { asymmetry / size } else { zero }, force, quadrature })
+        Ok(Resolution { mass: if size > zero { asymmetry / size } else { zero }, force, quadrature, repulsion })
     }
 }

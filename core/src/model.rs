@@ -179,6 +179,11 @@ impl<'a, R: Real> Model<'a, R> {
     pub fn plan(&self) -> &'a Plan {
         &self.head.plan
     }
+    /// Is a coordinate an angle, and not a length?
+    pub(crate) fn is_angle(&self, c: &CoordinateRecord<R>) -> bool {
+        let slides = || self.links.get(c.link).is_some_and(|l| matches!(l.hold, Hold::Slider { .. }));
+        c.component == 2 || (c.component == 3 && !slides())
+    }
     /// Number of links of all bodies.
     pub fn link_count(&self) -> usize {
         self.links.len()

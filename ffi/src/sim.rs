@@ -397,8 +397,29 @@ pub(crate) unsafe fn resolution<R: Real>(
     // SAFETY: checked above and in `sim`.
     unsafe {
         let r = question(&mut sim(handle.cast_const())?.view()?)?;
-        sound([r.mass, r.force, r.quadrature])?;
-        give(out, ResolutionOut { mass: r.mass, force: r.force, quadrature: r.quadrature, bound: r.bound() })
+        sound([r.mass, r.force, r.quadrature, r.repulsion])?;
+        let Resolution { mass, force, quadrature, repulsion } = r;
+        give(out, ResolutionOut { mass, force, quadrature, repulsion, bound: r.bound() })
+    }
+}
+
+pub(crate) unsafe fn time_error<R: Real>(handle: *const SimHandle<R>, out: *mut TimeErrorOut<R>) -> Outcome<Status> {
+    check_pointer("error", out.cast_const())?;
+    // SAFETY: checked above and in `sim`.
+    unsafe {
+        let e = sim(handle)?.view()?.time_error();
+        let error = TimeErrorOut {
+            length: e.length,
+            angle: e.angle,
+            speed: e.speed,
+            spin: e.spin,
+            length_sum: e.length_sum,
+            angle_sum: e.angle_sum,
+            speed_sum: e.speed_sum,
+            spin_sum: e.spin_sum,
+            unknown: e.unknown,
+        };
+        give(out, error)
     }
 }
 

@@ -456,8 +456,37 @@ pub struct ResolutionOut<R> {
     pub force: R,
     /// Error of the constant density as a solution of the boundary system.
     pub quadrature: R,
-    /// Bound of the relative error of added mass and force: 100 times the largest of the three.
+    /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
+    /// repulsion.
+    pub repulsion: R,
+    /// Bound of the relative error of added mass, force and repulsion: 100 times the largest of the four.
     pub bound: R,
+}
+
+/// Estimated local errors of time integration, that is of each step by itself, from nekton_sim_time_error: each the largest over
+/// the free coordinates of its kind, 0 if there are none. Lengths are the x and y of bodies and what sliders slide, angles the
+/// headings of bodies and hinges.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeErrorOut<R> {
+    /// Of lengths in the last step that could be estimated, m; NaN if there was none.
+    pub length: R,
+    /// Of angles, rad; NaN as above.
+    pub angle: R,
+    /// Of the rates of lengths, m/s; NaN as above; 0 for a lone swimmer, whose rates are not integrated.
+    pub speed: R,
+    /// Of the rates of angles, rad/s; NaN and 0 as above.
+    pub spin: R,
+    /// Sum over all steps that could be estimated, m.
+    pub length_sum: R,
+    /// The same of angles, rad.
+    pub angle_sum: R,
+    /// Of the rates of lengths, m/s.
+    pub speed_sum: R,
+    /// Of the rates of angles, rad/s.
+    pub spin_sum: R,
+    /// Number of steps that could not be estimated, and are missing in the sums.
+    pub unknown: u64,
 }
 
 /// The smallest gap between two boundaries of which one moves.

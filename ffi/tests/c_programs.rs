@@ -36,6 +36,7 @@ fn single(source: &str) -> String {
         "link_info",
         "energy",
         "resolution",
+        "time_error",
         "gap",
     ] {
         text = text.replace(&format!("nekton_{name}"), &format!("nekton32_{name}"));
@@ -204,6 +205,9 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
     check("impulse", &sim.impulse().unwrap());
     check("resolution", &[sim.resolution().unwrap().mass]);
     check("indicators", &[sim.indicators().unwrap().bound()]);
+    let e = sim.time_error();
+    check("time_error", &[e.length_sum, e.angle_sum, e.speed_sum, e.spin_sum]);
+    check("unknown", &[R::count(e.unknown as usize)]);
     check("gap", &[sim.gap().distance]);
     check("steps", &[R::count(sim.counters().steps as usize)]);
 }

@@ -227,7 +227,16 @@ macro_rules! round_trip {
                 assert_eq!(unsafe { sim_resolution(c, resolution.as_mut_ptr(), null) }, 0);
                 let (r, resolution) = (rust.resolution().unwrap(), unsafe { resolution.assume_init() });
                 assert_eq!((r.mass, r.force, r.quadrature), (resolution.mass, resolution.force, resolution.quadrature));
-                assert_eq!(r.bound(), resolution.bound);
+                assert_eq!((r.repulsion, r.bound()), (resolution.repulsion, resolution.bound));
+                let mut error = std::mem::MaybeUninit::uninit();
+                assert_eq!(unsafe { sim_time_error(c, error.as_mut_ptr()) }, 0);
+                let (r, e) = (rust.time_error(), unsafe { error.assume_init() });
+                let bits = |all: [Real; 8]| all.map(Real::to_bits);
+                assert_eq!(
+                    bits([r.length, r.angle, r.speed, r.spin, r.length_sum, r.angle_sum, r.speed_sum, r.spin_sum]),
+                    bits([e.length, e.angle, e.speed, e.spin, e.length_sum, e.angle_sum, e.speed_sum, e.spin_sum])
+                );
+                assert_eq!(r.unknown, e.unknown);
                 let mut gap = std::mem::MaybeUninit::uninit();
                 assert_eq!(unsafe { sim_gap(c, gap.as_mut_ptr(), null) }, 0);
                 let gap = unsafe { gap.assume_init() };

@@ -304,6 +304,7 @@ macro_rules! precision {
                     let (mut a, mut b) = (vec![R::NAN; n + 1], vec![R::NAN; n + 1]);
                     let (mut energy, mut resolution) = (zeroed::<EnergyOut<R>>(), zeroed::<ResolutionOut<R>>());
                     let (mut gap, mut counters) = (zeroed::<GapOut<R>>(), zeroed::<nekton_counters>());
+                    let mut time_error = zeroed::<TimeErrorOut<R>>();
                     let mut impulse = [R::NAN; 3];
                     // SAFETY: a live simulation and true buffers.
                     unsafe {
@@ -323,13 +324,16 @@ macro_rules! precision {
                         for question in [sim_resolution, sim_indicators] {
                             if check_report(question(self.sim, &mut resolution, &mut diag), &diag) {
                                 assert!(resolution.mass.is_finite() && resolution.force.is_finite());
-                                assert!(resolution.quadrature.is_finite() && resolution.bound >= R::default());
+                                assert!(resolution.quadrature.is_finite() && resolution.repulsion.is_finite());
+                                assert!(resolution.bound >= R::default());
                             }
                         }
                         if check_report(sim_gap(self.sim, &mut gap, &mut diag), &diag) {
                             assert!(!gap.distance.is_nan());
                         }
                         assert!(sim_counters(self.sim, &mut counters) >= 0);
+                        assert!(sim_time_error(self.sim, &mut time_error) >= 0);
+                        assert!(time_error.length_sum >= R::default() && time_error.spin_sum >= R::default());
                         assert!(before == self.seen(self.sim), "a question moved the simulation");
                     }
                 }
@@ -445,6 +449,7 @@ precision!(double, api64, f64, {
     sim_impulse = nekton_sim_impulse,
     sim_indicators = nekton_sim_indicators,
     sim_resolution = nekton_sim_resolution,
+    sim_time_error = nekton_sim_time_error,
     sim_gap = nekton_sim_gap,
     sim_counters = nekton_sim_counters,
 });
@@ -489,6 +494,7 @@ precision!(single, api32, f32, {
     sim_impulse = nekton32_sim_impulse,
     sim_indicators = nekton32_sim_indicators,
     sim_resolution = nekton32_sim_resolution,
+    sim_time_error = nekton32_sim_time_error,
     sim_gap = nekton32_sim_gap,
     sim_counters = nekton32_sim_counters,
 });

@@ -12,7 +12,7 @@ M = exact.addedMass();
 e = max(max(abs(coarse.addedMass() - M))) / max(max(abs(M)));
 r = coarse.resolution();
 s = coarse.indicators();
-assert(e > 1e-5 && r.bound >= e && s.bound >= e && r.bound == 100 * max([r.mass, r.force, r.quadrature]));
+assert(e > 1e-5 && r.bound >= e && s.bound >= e && r.bound == 100 * max([r.mass, r.force, r.quadrature]) && r.repulsion == 0);
 delete(exact);
 delete(coarse);
 

@@ -11,4 +11,20 @@ for method = {'rk4', 'abm4', 'gauss6'}
     near(sim.time, 0.5, 0);
     raises('nekton:arg:range', @() sim.setStepLimit(0));
 end
+
+% Estimated errors of time: no smaller than the true ones, and at most a thousand times as large.
+for method = {'rk4', 'abm4', 'gauss6'}
+    sim = Nekton(eggs(), 'method', method{1}, 'step', 0.02);
+    sim.advance(0.5);
+    e = sim.timeError();
+    if strcmp(method{1}, 'gauss6')
+        assert(isnan(e.length) && e.unknown == 25 && e.length_sum == 0);
+        continue
+    end
+    d = abs(sim.positions - exact.positions);
+    told = [e.length_sum + 0.5 * e.speed_sum, e.angle_sum + 0.5 * e.spin_sum];
+    true_error = [max(max(d(1:2, :))), max(d(3, :))];
+    assert(all(told > true_error) && all(told < 1000 * true_error + 1e-11));
+    assert(e.length > 0 && e.angle > 0 && e.speed > 0 && e.spin > 0 && e.unknown > 0);
+end
 end

@@ -52,6 +52,8 @@ template <class R> int run()
     CHECK(moved.step() == NEKTON_OK && other.step() == NEKTON_OK);
     CHECK(moved.positions(q) == NEKTON_OK && other.positions(p) == NEKTON_OK);
     CHECK(q[0] == p[0] && q[1] == p[1] && q[2] == p[2] && moved.counters().steps == 11);
+    std::conditional_t<std::is_same<R, double>::value, nekton_time_error, nekton32_time_error> late;
+    CHECK(moved.time_error(late) == NEKTON_OK && late.length_sum > 0 && late.spin_sum >= 0 && late.unknown < 11);
     // Memory of the caller.
     nekton_req req = {};
     CHECK(nekton::BasicModel<R>::req(scene, req) == NEKTON_OK);

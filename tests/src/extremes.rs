@@ -57,7 +57,7 @@ pub struct Outcome {
     pub energy_drift: f64,
     /// Largest error indicators of space: mass, force.
     pub space: [f64; 2],
-    /// Sum of the estimated local errors of the positions.
+    /// Sum of the estimated local errors of the positions, in sizes of a body and radians.
     pub time_error: f64,
     /// Evaluations.
     pub evaluations: u64,
@@ -131,7 +131,9 @@ impl Case {
             out.positions = sim.positions().iter().enumerate().map(unit).collect();
             let estimate = sim.time_error();
             // Errors of the rates act for the rest of the run.
-            out.time_error = estimate.position_sum.to_f64() + self.duration * estimate.velocity_sum.to_f64();
+            let acting = |own: R, rate: R| own.to_f64() + self.duration * rate.to_f64();
+            let length = acting(estimate.length_sum, estimate.speed_sum) / self.size;
+            out.time_error = length.max(acting(estimate.angle_sum, estimate.spin_sum));
             out.evaluations = sim.counters().evaluations;
             ended
         });
@@ -181,7 +183,7 @@ impl Case {
         let row = |precision, outcome: Outcome| {
             let comparable = exact.status == "Ok" && outcome.status == "Ok";
             let error = if comparable { distance(&outcome.positions, &exact.positions) / self.size } else { f64::NAN };
-            Row { parameter, precision, error, size: self.size, outcome }
+            Row { parameter, precision, error, outcome }
         };
         [row("f64", self.run::<f64>(self.adams(1e-10))), row("f32", self.run::<f32>(self.adams(3e-6)))]
     }
@@ -201,8 +203,6 @@ pub struct Row {
     pub precision: &'static str,
     /// Largest error of positions and angles at the end, in sizes of a body and radians; NaN if it did not get there.
     pub error: f64,
-    /// Size of a body, m.
-    pub size: f64,
     /// The run.
     pub outcome: Outcome,
 }
@@ -210,7 +210,7 @@ pub struct Row {
 impl Row {
     /// What the indicators say that the error may be.
     pub fn indicated(&self) -> f64 {
-        self.outcome.space[0].max(self.outcome.space[1]) + self.outcome.time_error / self.size
+        self.outcome.space[0].max(self.outcome.space[1]) + self.outcome.time_error
     }
 }
 
@@ -234,7 +234,7 @@ pub fn csv(parameter: &str, rows: &[Row]) -> String {
             o.energy_drift,
             o.space[0],
             o.space[1],
-            o.time_error / r.size,
+            o.time_error,
             o.evaluations
         );
     }

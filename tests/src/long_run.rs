@@ -198,10 +198,10 @@ pub fn circle<R: Real>(method: Method<R>, step: f64, steps: u64) -> StepOutcome 
         }
     }
     let e = sim.time_error();
-    let estimate = if e.position.is_nan() {
+    let estimate = if e.length.is_nan() {
         f64::NAN
     } else {
-        e.position_sum.to_f64() + e.velocity_sum.to_f64() * f64::min(step * steps as f64, PERIOD)
+        e.length_sum.to_f64() + e.speed_sum.to_f64() * f64::min(step * steps as f64, PERIOD)
     };
     StepOutcome { status, steps: sim.counters().steps, error, estimate, unknown: e.unknown }
 }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Types whose names in C depend on the precision.
-const TYPES: [(&str, &str); 15] = [
+const TYPES: [(&str, &str); 16] = [
     ("SceneDef", "scene_def"),
     ("WallDef", "wall_def"),
     ("BodyDef", "body_def"),
@@ -21,6 +21,7 @@ const TYPES: [(&str, &str); 15] = [
     ("LinkOut", "link_info"),
     ("EnergyOut", "energy"),
     ("ResolutionOut", "resolution"),
+    ("TimeErrorOut", "time_error"),
     ("GapOut", "gap"),
     ("ModelHandle", "model"),
     ("SimHandle", "sim"),

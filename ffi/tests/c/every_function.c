@@ -167,6 +167,7 @@ int main(void) {
     print("christoffel_tensor", a, n * n * n);
     nekton_energy energy;
     nekton_resolution resolution;
+    nekton_time_error error;
     nekton_gap gap;
     nekton_counters counters;
     MUST(nekton_sim_energy(sim, &energy, &diag));
@@ -178,6 +179,9 @@ int main(void) {
     print("resolution", &resolution.mass, 1);
     MUST(nekton_sim_indicators(sim, &resolution, &diag));
     print("indicators", &resolution.bound, 1);
+    MUST(nekton_sim_time_error(sim, &error));
+    print("time_error", &error.length_sum, 4);
+    printf("unknown %lu\n", (unsigned long)error.unknown);
     MUST(nekton_sim_gap(sim, &gap, &diag));
     print("gap", &gap.distance, 1);
     MUST(nekton_sim_counters(sim, &counters));

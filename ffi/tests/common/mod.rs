@@ -152,6 +152,7 @@ precision!(
     nekton_sim_impulse = sim_impulse,
     nekton_sim_indicators = sim_indicators,
     nekton_sim_resolution = sim_resolution,
+    nekton_sim_time_error = sim_time_error,
     nekton_sim_gap = sim_gap,
     nekton_sim_counters = sim_counters
 );
@@ -207,6 +208,7 @@ precision!(
     nekton32_sim_impulse = sim_impulse,
     nekton32_sim_indicators = sim_indicators,
     nekton32_sim_resolution = sim_resolution,
+    nekton32_sim_time_error = sim_time_error,
     nekton32_sim_gap = sim_gap,
     nekton32_sim_counters = sim_counters
 );
