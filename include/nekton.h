@@ -1773,7 +1773,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
 #define NEKTON_P_SQ(x) (NEKTON_P_S(x) * NEKTON_P_S(x))
 #define NEKTON_P_L(bodies, joints) (NEKTON_P_S(bodies) + NEKTON_P_S(joints))
 #define NEKTON_P_C(bodies, joints) (3 * NEKTON_P_S(bodies) + NEKTON_P_S(joints))
-#define NEKTON_P_OUTLINE(points) (170 * NEKTON_P_S(points) + 8)
+#define NEKTON_P_OUTLINE(points) (200 * NEKTON_P_S(points) + 8)
 #define NEKTON_P_MOST(a, b) (NEKTON_P_S(a) > NEKTON_P_S(b) ? NEKTON_P_S(a) : NEKTON_P_S(b))
 /* The potential of rotation, on twice the nodes where they will move. */
 #define NEKTON_P_BUILD(points, nodes, graded) \
@@ -1781,18 +1781,18 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
                              : ((graded) ? 8 : 2) * NEKTON_P_SQ(nodes) + 26 * NEKTON_P_S(nodes) + NEKTON_P_SQ(points) + \
                                    144 * NEKTON_P_S(points) + 80)
 /* Rungs of one boundary, beyond the permanent ones. */
-#define NEKTON_P_RUNGS(nodes) (6 * NEKTON_P_MOST(nodes, 24) + 4)
+#define NEKTON_P_RUNGS(nodes) (7 * NEKTON_P_MOST(nodes, 24) + 4)
 /* What graded quadrature adds to a model: pole tables, ladders, tips, modes; ladders that walls cause on each other; repulsion. */
 #define NEKTON_P_MODEL_GRADED(boundaries, nodes, walls, wall_nodes, points, graded) \
     (NEKTON_P_S((graded) != 0) * \
          ((boundaries) * (6 * NEKTON_P_MOST(nodes, wall_nodes) + 4 + 3 * NEKTON_P_S(points) + NEKTON_P_MOST(points, 32)) + \
           NEKTON_P_S(walls) * (NEKTON_P_RUNGS(wall_nodes) + 150)) + \
-     NEKTON_P_S((graded) == 2) * 5200)
+     NEKTON_P_S((graded) == 2) * 5400)
 /* The same for a simulation: nodes, rungs, ladders, preimages. */
 #define NEKTON_P_SIM_GRADED(boundaries, u, nodes, wall_nodes, points, graded) \
     (NEKTON_P_S((graded) != 0) * \
      (8 * (u) + (boundaries) * (2 * NEKTON_P_RUNGS(NEKTON_P_MOST(nodes, wall_nodes)) + NEKTON_P_OUTLINE(points) + 74) + \
-      10 * (boundaries) * (u)))
+      14 * (boundaries) * (u)))
 #define NEKTON_P_MODEL_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded) \
     (NEKTON_P_L(bodies, joints) * (8 * NEKTON_P_S(nodes) + (1 + NEKTON_P_S(circulation)) * NEKTON_P_SQ(nodes)) + \
      7 * NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes) + \
@@ -1808,7 +1808,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
     (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 40)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
-     ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + 2 + NEKTON_P_S(circulation) * (u) * ((u) + 7))
+     ((u) + 15) * ((u) + (c) + 1) + 13 * (u) + 20 + NEKTON_P_S(circulation) * (u) * ((u) + 7))
 #define NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded) \
     (2 * NEKTON_P_KEPT(bodies, joints, walls, channels) + \
      NEKTON_P_EVALUATION(NEKTON_P_L(bodies, joints), NEKTON_P_C(bodies, joints), \
