@@ -1,4 +1,5 @@
-//! Writes the tables of the extremes to the folder given: `cargo run --release -p nekton-tests --example extremes docs/accuracy`.
+//! Writes the tables of the extremes to the folder given: `cargo run --release -p nekton-tests --example extremes docs/accuracy`; one
+//! table if it is named after that; of `long_run` one motion and one method if these are named too.
 
 use nekton_tests::extremes::*;
 use nekton_tests::long_run::{drift_table, step_table};
@@ -45,7 +46,8 @@ fn main() -> std::io::Result<()> {
     if wanted("long_run") {
         let mut text = String::new();
         let path = folder.join("extremes_long_run.csv");
-        drift_table(&mut text, &mut |text| {
+        let (motion, method) = (arguments.next(), arguments.next());
+        drift_table(&mut text, [motion.as_deref(), method.as_deref()], &mut |text| {
             if let Err(error) = std::fs::write(&path, text) {
                 eprintln!("{}: {error}", path.display());
             }

@@ -55,12 +55,14 @@ pub struct Outcome {
     pub positions: Vec<f64>,
     /// Largest change of the total energy, relative to the largest kinetic or potential energy.
     pub energy_drift: f64,
-    /// Largest error indicators of space: mass, force.
-    pub space: [f64; 2],
+    /// Largest error indicators of space: mass, force, quadrature, repulsion.
+    pub space: [f64; 4],
     /// Sum of the estimated local errors of the positions, in sizes of a body and radians.
     pub time_error: f64,
     /// Evaluations.
     pub evaluations: u64,
+    /// Time of the run, s, set-up and samples included.
+    pub seconds: f64,
 }
 
 /// Samples of energy and indicators in a run.
@@ -113,15 +115,17 @@ impl Case {
 
     /// Runs to the end or to the first error.
     pub fn run<R: Real>(&self, method: Method<R>) -> Outcome {
+        let clock = std::time::Instant::now();
         let made = self.scene(|scene| ModelBuf::<R>::new(scene)).and_then(|model| SimBuf::new(Arc::new(model), method));
         let mut out = Outcome {
             status: "Ok",
             time: 0.0,
             positions: Vec::new(),
             energy_drift: 0.0,
-            space: [0.0; 2],
+            space: [0.0; 4],
             time_error: 0.0,
             evaluations: 0,
+            seconds: 0.0,
         };
         let ended = made.and_then(|mut sim| {
             let mut sim = sim.view();
@@ -140,6 +144,7 @@ impl Case {
         if let Err(error) = ended {
             out.status = error.status.name();
         }
+        out.seconds = clock.elapsed().as_secs_f64();
         out
     }
 
@@ -156,7 +161,9 @@ impl Case {
             size = size.max(kinetic).max((e.total.to_f64() - kinetic - start).abs().min(kinetic.abs()));
             out.energy_drift = if size > 0.0 { drift / size } else { drift };
             let r = sim.resolution()?;
-            out.space = [out.space[0].max(r.mass.to_f64()), out.space[1].max(r.force.to_f64())];
+            for (most, now) in out.space.iter_mut().zip([r.mass, r.force, r.quadrature, r.repulsion]) {
+                *most = most.max(now.to_f64());
+            }
         }
         Ok(())
     }
@@ -210,13 +217,13 @@ pub struct Row {
 impl Row {
     /// What the indicators say that the error may be.
     pub fn indicated(&self) -> f64 {
-        self.outcome.space[0].max(self.outcome.space[1]) + self.outcome.time_error
+        self.outcome.space.iter().fold(0.0, |m: f64, x| m.max(*x)) + self.outcome.time_error
     }
 }
 
 /// The columns after the first.
 pub const COLUMNS: &str = "precision,status,time_reached_s,position_error_sizes,energy_drift_relative,indicator_mass,indicator_force,\
-                           indicator_time_sizes,evaluations";
+                           indicator_quadrature,indicator_repulsion,indicator_time_sizes,evaluations,seconds";
 
 /// A table as CSV.
 pub fn csv(parameter: &str, rows: &[Row]) -> String {
@@ -225,7 +232,7 @@ pub fn csv(parameter: &str, rows: &[Row]) -> String {
         let o = &r.outcome;
         let _ = writeln!(
             text,
-            "{:e},{},{},{:.4e},{:.1e},{:.1e},{:.1e},{:.1e},{:.1e},{}",
+            "{:e},{},{},{:.4e},{:.1e},{:.1e},{:.1e},{:.1e},{:.1e},{:.1e},{:.1e},{},{:.1e}",
             r.parameter,
             r.precision,
             o.status,
@@ -234,8 +241,11 @@ pub fn csv(parameter: &str, rows: &[Row]) -> String {
             o.energy_drift,
             o.space[0],
             o.space[1],
+            o.space[2],
+            o.space[3],
             o.time_error,
-            o.evaluations
+            o.evaluations,
+            o.seconds
         );
     }
     text
@@ -283,7 +293,7 @@ pub fn bodies(n: usize) -> Case {
             velocity: [0.3 * phase.cos(), 0.3 * phase.sin(), 0.5 * (2.0 * phase).cos()],
         }
     };
-    Case { bodies: (0..n).map(one).collect(), nodes: 20, duration: 0.2, ..two(1.0, 1.0) }
+    Case { bodies: (0..n).map(one).collect(), nodes: 16, duration: 0.2, ..two(1.0, 1.0) }
 }
 
 /// A disc of radius 1 in a disc tank whose radius is larger by `gap`, off its centre.

@@ -9,7 +9,9 @@ use std::sync::Arc;
 pub mod near;
 
 pub mod extremes;
+pub mod indicator_study;
 pub mod long_run;
+pub mod regrading;
 
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use crate::{body, disc, hinged, link, simulation, wall};
 use nekton::scalar::Real;
-use nekton::scene::{Drive, Link, Scene, Shape, Signal};
+use nekton::scene::{Drive, Link, Quadrature, Scene, Shape, Signal};
 use nekton::{Method, Sim, SimBuf};
 use std::fmt::Write;
 
@@ -37,7 +37,8 @@ fn tumbling_ellipse<R: Real>(method: Method<R>) -> SimBuf<R> {
 /// Two links that a spring bends, alone in the fluid.
 fn sprung_links<R: Real>(method: Method<R>) -> SimBuf<R> {
     let r = |x: f64| R::lit(x);
-    let one = link(Shape::Ellipse { a: r(1.0), b: r(0.4) }, r(1.0), 16);
+    // Few nodes: the energy of the discrete system is conserved whatever their number.
+    let one = link(Shape::Ellipse { a: r(1.0), b: r(0.4) }, r(1.0), 8);
     let drive = Drive::Torque {
         torque: Signal::Constant(r(0.0)),
         stiffness: r(4.0),
@@ -47,7 +48,7 @@ fn sprung_links<R: Real>(method: Method<R>) -> SimBuf<R> {
     };
     let links = [one, hinged(one, 0, [r(-1.3), r(0.0)], [r(1.3), r(0.0)], drive)];
     let bodies = [body(&links, [r(0.0); 3], [r(0.2), r(0.1), r(0.05)])];
-    simulation(&Scene { bodies: &bodies, ..Scene::new(r(1.0), r(0.0)) }, method)
+    simulation(&Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(r(1.0), r(0.0)) }, method)
 }
 
 /// A disc with circulation that circles in a tank.
@@ -78,7 +79,7 @@ pub fn motions<R: Real>() -> [Motion<R>; 4] {
     [
         Motion { name: "circling_disc", make: circling_disc, step: 0.0271, free: true, steps: 1_000_000 },
         Motion { name: "tumbling_ellipse", make: tumbling_ellipse, step: 0.1, free: true, steps: 1_000_000 },
-        Motion { name: "sprung_links", make: sprung_links, step: 0.1, free: true, steps: 10_000 },
+        Motion { name: "sprung_links", make: sprung_links, step: 0.1, free: true, steps: 1_000_000 },
         Motion { name: "disc_in_tank", make: disc_in_tank, step: 0.1, free: false, steps: 10_000 },
     ]
 }
@@ -120,13 +121,18 @@ pub fn drifts<R: Real>(motion: &Motion<R>, method: Method<R>, steps: u64) -> Vec
     let mut next = SAMPLES * STRIDE;
     while next <= steps {
         while made + SAMPLES * STRIDE < next {
-            sim.step().unwrap();
+            // In single precision a variable step may become too short to be told from none: what there is ends there.
+            if sim.step().is_err() {
+                return out;
+            }
             made += 1;
         }
         let (mut mean, mut kinetic) = (0.0, 0.0_f64);
         for _ in 0..SAMPLES {
             for _ in 0..STRIDE {
-                sim.step().unwrap();
+                if sim.step().is_err() {
+                    return out;
+                }
                 made += 1;
             }
             let e = sim.energy().unwrap();
@@ -146,11 +152,13 @@ fn impulse_change<R: Real>(sim: &mut Sim<'_, R>, start: &[R; 3]) -> f64 {
     now.iter().zip(start).fold(0.0, |m: f64, (a, b)| m.max((a.to_f64() - b.to_f64()).abs()))
 }
 
-/// Rows of the table of drifts; `part_done` is called with what there is after each run.
-pub fn drift_table(text: &mut String, part_done: &mut dyn FnMut(&str)) {
-    fn part<R: Real>(text: &mut String, precision: &str, part_done: &mut dyn FnMut(&str)) {
-        for motion in &motions::<R>() {
-            for (name, method) in methods::<R>(motion.step) {
+/// Rows of the table of drifts, of all motions or one, of all methods or one; `part_done` is called with what there is after each run.
+pub fn drift_table(text: &mut String, only: [Option<&str>; 2], part_done: &mut dyn FnMut(&str)) {
+    fn part<R: Real>(text: &mut String, only: [Option<&str>; 2], precision: &str, part_done: &mut dyn FnMut(&str)) {
+        let wanted = |name: &str, only: Option<&str>| only.is_none_or(|o| o == name);
+        for motion in motions::<R>().iter().filter(|m| wanted(m.name, only[0])) {
+            for (name, method) in methods::<R>(motion.step).into_iter().filter(|m| wanted(m.0, only[1])) {
+                let clock = std::time::Instant::now();
                 for d in drifts(motion, method, motion.steps) {
                     let _ = writeln!(
                         text,
@@ -158,13 +166,14 @@ pub fn drift_table(text: &mut String, part_done: &mut dyn FnMut(&str)) {
                         motion.name, motion.step, d.steps, d.energy, d.impulse
                     );
                 }
+                println!("{} {name} {precision}: {:.0} s", motion.name, clock.elapsed().as_secs_f64());
                 part_done(text);
             }
         }
     }
     text.push_str("motion,method,precision,step_s,steps,energy_drift_relative,impulse_drift_relative\n");
-    part::<f64>(text, "f64", part_done);
-    part::<f32>(text, "f32", part_done);
+    part::<f64>(text, only, "f64", part_done);
+    part::<f32>(text, only, "f32", part_done);
 }
 
 /// What one step length comes to on the circling disc.

@@ -283,3 +283,12 @@ fn automatic_nodes_follow_from_scene_and_tolerance_alone() {
     assert_eq!(single.view().notice(), None);
     assert!((1e-3..2e-3).contains(&single.view().model().plan().tolerance));
 }
+
+#[test]
+fn error_of_random_scenes_without_circulation_is_within_the_bound_also_of_accelerations() {
+    // Six thousand evaluations are in docs/accuracy/indicators.csv.
+    let summary = nekton_tests::indicator_study::summary(200);
+    println!("{}", summary.table);
+    let [mass_or_force, acceleration] = summary.largest[0];
+    assert!(mass_or_force <= 100.0 && acceleration <= 100.0, "{}", summary.table);
+}

@@ -39,9 +39,10 @@ commands:
              headers, libraries, pkg-config file and CMake package into folder P
   extremes [TABLE]
              docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
-  trade [--quick | --resume | --tables]
+  trade [--quick | --resume | --tables | SCENE]
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
-             target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already)
+             target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already;
+             SCENE: one of scenes/, without repeating what is measured)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
         ["trade", "--resume"] => trade::run(true),
         ["trade", "--tables"] => steps::Steps::only("tables", trade::collected),
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
+        ["trade", scene] if !scene.starts_with('-') => trade::one(scene),
         ["header"] => header::run(),
         ["extremes"] => extremes(&[]),
         ["extremes", table] => extremes(&[table]),

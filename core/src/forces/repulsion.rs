@@ -165,7 +165,7 @@ impl<R: Real> Harmonics<R> {
             for (sum, term) in sums.iter_mut().zip(terms) {
                 *sum += *weight * term;
             }
-            *weight = *weight * turn;
+            *weight *= turn;
         }
     }
 
