@@ -41,8 +41,7 @@ impl Dims {
             coordinates,
             free: p.free_coordinates,
             unknowns: p.unknowns,
-            // An odd multiple of a cache line keeps columns from falling on the same lines.
-            ld: if p.unknowns == 0 { 0 } else { p.unknowns + 8 },
+            ld: leading(p.unknowns),
             columns: p.free_coordinates + usize::from(head.prescribed_moves),
             circulating: if p.circulation { p.unknowns } else { 0 },
             channels: head.channels,
@@ -50,6 +49,20 @@ impl Dims {
         }
     }
 }
+
+/// Leading dimension of the boundary system: an odd multiple of a cache line keeps columns from falling on the same lines,
+/// and each begins where a line begins if the first does.
+pub(crate) fn leading(unknowns: usize) -> usize {
+    if unknowns == 0 { 0 } else { (unknowns.div_ceil(8) | 1) * 8 }
+}
+
+/// Reals by which the matrix may be moved to begin with a cache line, where vectors are that long.
+fn slack<R>(unknowns: usize) -> usize {
+    if unknowns > 0 && cfg!(target_arch = "x86_64") { LINE / size_of::<R>() } else { 0 }
+}
+
+/// Bytes of a cache line.
+const LINE: usize = 64;
 
 buffers! {
     /// Scratch and results of one evaluation.
@@ -77,7 +90,9 @@ buffers! {
         outer: 3 * d.links,
         spare: 3 * d.links,
         indicators: 2,
-        matrix: d.ld * (d.unknowns + d.columns),
+        /// Where in its memory the matrix begins.
+        matrix_at: 1,
+        matrix: d.ld * (d.unknowns + d.columns) + slack::<R>(d.unknowns),
         pivots: d.unknowns,
         regular: d.circulating * d.circulating,
         density: d.unknowns,
@@ -110,8 +125,8 @@ buffers! {
 macro_rules! system {
     ($w:expr) => {
         BoundarySystem {
-            matrix: $w.matrix,
-            ld: $w.pivots.len() + 8,
+            matrix: crate::work::from($w.matrix, $w.matrix_at),
+            ld: crate::work::leading($w.pivots.len()),
             unknowns: $w.pivots.len(),
             pivots: $w.pivots,
             regular: $w.regular,
@@ -153,6 +168,12 @@ macro_rules! configuration {
     };
 }
 pub(crate) use {configuration, flow, scratch, system};
+
+/// The matrix in its memory.
+pub(crate) fn from<'a, R: Real>(memory: &'a mut [R], at: &[R]) -> &'a mut [R] {
+    let at = crate::workspace::at(at, 0).to_f64() as usize;
+    memory.get_mut(at..).unwrap_or(&mut [])
+}
 
 /// Counts that a simulation keeps.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -236,6 +257,10 @@ impl<R: Real> Work<'_, R> {
             to_link_frames(c, v, m);
         }
         counters.factorizations += 1;
+        // Kept as a number, so that memory that is moved later keeps its meaning.
+        let to_line = self.matrix.as_ptr().align_offset(LINE);
+        let fits = to_line <= slack::<R>(self.pivots.len());
+        put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
         let mut system = system!(self);
         system.solve(c, self.moving, self.zx, self.zy)?;
         let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
