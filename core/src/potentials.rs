@@ -8,11 +8,12 @@
 use crate::articulation::{put_three, twist_of};
 use crate::boundary::Nodes;
 use crate::configuration::Configuration;
-use crate::lu::{Factors, factor};
+use crate::lu::{Factors, Machine, Task, factor_staggered};
 use crate::nystrom::assemble;
 use crate::scalar::{Complex, Real, complex, dot};
+use crate::se2::Twist;
 use crate::status::Result;
-use crate::workspace::{axpy, part, part_mut};
+use crate::workspace::{axpy, inner, part, part_mut};
 
 /// Three reals per link, world to link frame (linear parts turned).
 pub(crate) fn to_link_frames<R: Real>(c: &Configuration<'_, R>, world: &[R], out: &mut [R]) {
@@ -30,7 +31,7 @@ pub(crate) fn to_world<R: Real>(c: &Configuration<'_, R>, scale: R, vector: &mut
     }
 }
 
-fn potential<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
+fn potential<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: Twist<R>) -> impl Iterator<Item = R> + 'a {
     nodes
         .x
         .iter()
@@ -40,7 +41,7 @@ fn potential<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> i
 }
 
 /// Normal velocity times ds of a rigid motion given in the boundary's frame.
-fn flux<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: crate::se2::Twist<R>) -> impl Iterator<Item = R> + 'a {
+fn flux<'a, R: Real>(nodes: &'a Nodes<'a, R>, v: Twist<R>) -> impl Iterator<Item = R> + 'a {
     let h = nodes.step;
     nodes
         .points()
@@ -103,6 +104,45 @@ pub(crate) fn add_potential_moments<R: Real>(c: &Configuration<'_, R>, f: &[R], 
     }
 }
 
+/// Momenta of all columns on one boundary.
+struct Momenta<'a, 'b, R> {
+    nodes: Nodes<'a, R>,
+    bx: &'b mut [R],
+    by: &'b mut [R],
+    bt: &'b mut [R],
+    columns: &'b [R],
+    ld: usize,
+    motions: &'b [R],
+    momenta: &'b mut [R],
+    rows: usize,
+    link: usize,
+}
+
+impl<R: Real> Task for Momenta<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let (n, h) = (self.nodes, self.nodes.step);
+        let weights = self.bx.iter_mut().zip(self.by.iter_mut()).zip(self.bt.iter_mut());
+        for ((((bx, by), bt), (x, y)), (dx, dy)) in weights.zip(n.x.iter().zip(n.y)).zip(n.dx.iter().zip(n.dy)) {
+            (*bx, *by, *bt) = (-*dy * h, *dx * h, (*x * *dx + *y * *dy) * h);
+        }
+        let b = [&*self.bx, &*self.by, &*self.bt];
+        // BᵀX, for the potential inside.
+        let inside = b.map(|b| [n.x, n.y, n.chi].map(|x| inner(b, x)));
+        let all = self.columns.chunks(self.ld.max(1)).zip(self.motions.chunks_exact(self.rows.max(1)));
+        for ((column, v), momentum) in all.zip(self.momenta.chunks_exact_mut(self.rows.max(1))) {
+            let u = part(column, 0, n.x.len());
+            let v = twist_of(v, self.link);
+            let moments = b.iter().zip(inside).map(|(b, [x, y, chi])| {
+                inner(b, u) + (x * v.linear.re + y * v.linear.im + chi * v.angular)
+            });
+            for (p, moment) in part_mut(momentum, 3 * self.link, 3).iter_mut().zip(moments) {
+                *p = moment;
+            }
+        }
+    }
+}
+
 /// The boundary system of one configuration in the caller's buffers.
 pub(crate) struct BoundarySystem<'a, R> {
     pub matrix: &'a mut [R],
@@ -124,19 +164,49 @@ impl<R: Real> BoundarySystem<'_, R> {
         assemble(c, self.matrix, self.ld, self.regular, zx, zy);
         let rows = 3 * c.model.links.len();
         let columns = motions.chunks_exact(rows.max(1)).len();
-        for (k, v) in motions.chunks_exact(rows.max(1)).enumerate() {
-            let column = self.column(k);
-            column.fill(R::zero());
-            add_interior_potential(c, v, -R::TWO, column);
+        let first = self.unknowns * self.ld;
+        for (_, b, nodes) in c.each_boundary() {
+            for (k, v) in motions.chunks_exact(rows.max(1)).enumerate() {
+                let column = part_mut(self.matrix, first + k * self.ld + b.first, b.nodes);
+                match b.link.map(|link| twist_of(v, link)).filter(|v| *v != Twist::default()) {
+                    Some(v) => {
+                        for (o, x) in column.iter_mut().zip(potential(&nodes, v)) {
+                            *o = -R::TWO * x;
+                        }
+                    }
+                    None => column.fill(R::zero()),
+                }
+            }
         }
+        // A motion that moves only later links leaves the rows of the earlier ones zero.
+        let begins = |v: &[R]| {
+            let moved = |b: &&crate::boundary::BoundaryRecord<R>| {
+                b.link.is_some_and(|link| twist_of(v, link) != Twist::default())
+            };
+            c.model.boundaries.iter().find(moved).map_or(self.unknowns, |b| b.first)
+        };
+        let begun = |row: usize| motions.chunks_exact(rows.max(1)).rposition(|v| begins(v) < row).map_or(0, |k| k + 1);
         let used = (self.unknowns + columns) * self.ld;
-        factor(part_mut(self.matrix, 0, used), self.ld, self.unknowns, self.pivots)?;
+        factor_staggered(part_mut(self.matrix, 0, used), self.ld, self.unknowns, self.pivots, begun)?;
         let Some((lu, rest)) = self.matrix.split_at_mut_checked(self.unknowns * self.ld) else {
             return Err(crate::status::Status::Internal.into());
         };
         let factors = Factors { lu, ld: self.ld, pivots: self.pivots };
         factors.back_substitute(part_mut(rest, 0, columns * self.ld));
         Ok(())
+    }
+
+    /// `momenta = Bᵀ (u + X v)` of every solved column, link frames. `scratch`: three vectors of length N.
+    pub(crate) fn momenta(&self, c: &Configuration<'_, R>, motions: &[R], scratch: [&mut [R]; 3], momenta: &mut [R]) {
+        let columns = part(self.matrix, self.unknowns * self.ld, self.matrix.len() - self.unknowns * self.ld);
+        let rows = 3 * c.model.links.len();
+        let [bx, by, bt] = scratch;
+        for (_, b, nodes) in c.each_boundary() {
+            let Some(link) = b.link else { continue };
+            let (bx, by, bt) = (part_mut(bx, 0, b.nodes), part_mut(by, 0, b.nodes), part_mut(bt, 0, b.nodes));
+            let (columns, ld) = (columns.get(b.first..).unwrap_or(&[]), self.ld);
+            Machine::here().run(Momenta { nodes, bx, by, bt, columns, ld, motions, momenta, rows, link });
+        }
     }
 
     /// The factors.

@@ -263,11 +263,8 @@ impl<R: Real> Work<'_, R> {
         put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
         let mut system = system!(self);
         system.solve(c, self.moving, self.zx, self.zy)?;
-        let columns = self.moving.chunks_exact(rows.max(1)).zip(self.momenta.chunks_exact_mut(rows.max(1)));
-        for (k, (m, p)) in columns.enumerate() {
-            copy(self.solution, system.column(k));
-            add_interior_potential(c, m, R::one(), self.solution);
-            flux_moments(c, self.solution, p);
+        system.momenta(c, self.moving, [self.hx, self.hy, self.fx], self.momenta);
+        for p in self.momenta.chunks_exact_mut(rows.max(1)) {
             to_world(c, density, p);
         }
         Ok(())

@@ -28,8 +28,8 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn small(self) -> usize {
         0
     }
-    /// Scalar product.
-    fn inner(self, a: &[R], b: &[R]) -> R;
+    /// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`.
+    fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]);
 }
 
 /// A computation that is worth compiling for the machine's own instructions: everything that `run` calls must be inlined.
@@ -58,7 +58,6 @@ pub(crate) use x86::Level;
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
-    use crate::workspace::inner;
     use core::arch::x86_64::*;
     use core::mem::transmute;
 
@@ -193,13 +192,13 @@ mod x86 {
                     unsafe { compiled(left, ld, k, right) }
                 }
                 #[inline(always)]
-                fn inner(self, a: &[R], b: &[R]) -> R {
+                fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]) {
                     #[target_feature(enable = $features)]
-                    fn compiled<R: Real>(a: &[R], b: &[R]) -> R {
-                        inner(a, b)
+                    fn compiled<R: Real>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+                        tile::solve_transposed::<R, R::$vector>(lu, ld, n, b);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
-                    unsafe { compiled(a, b) }
+                    unsafe { compiled(lu, ld, n, b) }
                 }
             }
         };
@@ -268,6 +267,12 @@ mod x86 {
                 #[inline(always)]
                 fn minus_product(self, a: Self, b: Self) -> Self {
                     unsafe { $name($fnmadd(a.0, b.0, self.0)) }
+                }
+                #[inline(always)]
+                fn sum(self) -> $t {
+                    let lanes = unsafe { transmute::<$inner, [$t; $width]>(self.0) };
+                    let (pairs, _) = lanes.as_chunks::<4>();
+                    pairs.iter().fold(0.0, |s, [a, b, c, d]| s + ((a + b) + (c + d)))
                 }
                 #[inline(always)]
                 fn max_abs(self, x: Self) -> Self {

@@ -67,18 +67,42 @@ macro_rules! with_kernel {
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
 pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
-    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, pivots))
+    factor_staggered(a, ld, n, pivots, |_| usize::MAX)
 }
 
-fn factor_by<R: Real, K: Kernel<R>>(kernel: K, a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
+/// The same where right-hand sides begin with zeros: `begun(row)` tells how many of the columns, from the first on, may hold
+/// anything else above that row.
+pub(crate) fn factor_staggered<R: Real>(
+    a: &mut [R],
+    ld: usize,
+    n: usize,
+    pivots: &mut [R],
+    begun: impl Fn(usize) -> usize,
+) -> Result<R> {
+    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, pivots, begun))
+}
+
+fn factor_by<R: Real, K: Kernel<R>>(
+    kernel: K,
+    a: &mut [R],
+    ld: usize,
+    n: usize,
+    pivots: &mut [R],
+    begun: impl Fn(usize) -> usize,
+) -> Result<R> {
     let (matrix, columns) = a.split_at_mut_checked(n * ld).ok_or(Status::Internal)?;
     let pivots = pivots.get_mut(..n).ok_or(Status::Internal)?;
     if n > ld {
         return Err(Status::Internal.into());
     }
     let (smallest, largest) = eliminate(kernel, matrix, ld, n, 0, pivots).ok_or(Status::Singular)?;
-    exchange_all(columns, ld, 0, pivots);
-    reduce(kernel, matrix, ld, n, 0, columns);
+    let straight = exchange_all(columns, ld, 0, pivots);
+    let width = if straight { (n / (8 * BLOCK) * BLOCK).clamp(2 * BLOCK, DEPTH) } else { DEPTH };
+    for (i, left) in matrix.chunks((width * ld).max(1)).enumerate() {
+        let count = if straight { begun((i + 1) * width) } else { usize::MAX };
+        let right = part_mut(columns, 0, count.saturating_mul(ld).min(columns.len()));
+        reduce(kernel, left, ld, n, i * width, right);
+    }
     let ratio = smallest / largest;
     if n > 0 && (ratio <= R::EPSILON * R::HALF || !ratio.is_finite()) {
         return Err(Status::Singular.into());
@@ -150,16 +174,17 @@ fn substitute_back<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: u
     substitute_back(kernel, first, ld, k, right);
 }
 
-/// Applies the exchanges of steps `k`, `k + 1`, … in order to every column.
-fn exchange_all<R: Real>(columns: &mut [R], ld: usize, k: usize, pivots: &[R]) {
+/// Applies the exchanges of steps `k`, `k + 1`, … in order to every column. Returns whether there were none.
+fn exchange_all<R: Real>(columns: &mut [R], ld: usize, k: usize, pivots: &[R]) -> bool {
     if pivots.iter().enumerate().all(|(p, row)| row_of(*row) == k + p) {
-        return;
+        return true;
     }
     for column in columns.chunks_mut(ld.max(1)) {
         for (p, row) in pivots.iter().enumerate() {
             exchange(column, k + p, row_of(*row));
         }
     }
+    false
 }
 
 #[inline]
@@ -192,22 +217,9 @@ impl<R: Real> Factors<'_, R> {
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transposed(&self, b: &mut [R]) {
-        with_kernel!(Level::here(), kernel => self.transposed_by(kernel, b));
+        with_kernel!(Level::here(), kernel => kernel.solve_transposed(self.lu, self.ld, self.pivots.len(), b));
         for (c, row) in self.pivots.iter().enumerate().rev() {
             exchange(b, c, row_of(*row));
-        }
-    }
-
-    fn transposed_by<K: Kernel<R>>(&self, kernel: K, b: &mut [R]) {
-        let n = self.pivots.len();
-        for (c, u) in self.matrix().chunks_exact(self.ld.max(1)).enumerate() {
-            let value = (at(b, c) - kernel.inner(part(u, 0, c), part(b, 0, c))) / at(u, c);
-            put(b, c, value);
-        }
-        for c in (0..n).rev() {
-            let (l, below) = (part(self.lu, c * self.ld, n), n - c - 1);
-            let value = at(b, c) - kernel.inner(part(l, c + 1, below), part(b, c + 1, below));
-            put(b, c, value);
         }
     }
 
@@ -279,7 +291,7 @@ mod tests {
         let mut all = Vec::new();
         for level in Level::all() {
             let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::zero(); n]);
-            with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, &mut pivots)).unwrap();
+            with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, &mut pivots, |_| usize::MAX)).unwrap();
             all.push((lu, pivots));
         }
         all

@@ -94,8 +94,17 @@ impl<R: Real> Kernel<R> for Portable {
         64
     }
 
-    fn inner(self, a: &[R], b: &[R]) -> R {
-        inner(a, b)
+    fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+        for c in 0..n {
+            let u = part(lu, c * ld, n);
+            let value = (at(b, c) - inner(part(u, 0, c), part(b, 0, c))) / at(u, c);
+            put(b, c, value);
+        }
+        for c in (0..n).rev() {
+            let (l, below) = (part(lu, c * ld, n), n - c - 1);
+            let value = at(b, c) - inner(part(l, c + 1, below), part(b, c + 1, below));
+            put(b, c, value);
+        }
     }
 }
 

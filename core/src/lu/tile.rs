@@ -27,6 +27,8 @@ pub trait Lanes<R>: Copy {
     fn store(self, to: &mut [R]);
     /// `self − a b`.
     fn minus_product(self, a: Self, b: Self) -> Self;
+    /// Sum of the rows.
+    fn sum(self) -> R;
     /// The larger of `self` and |x|, row by row; `self` where x is NaN.
     fn max_abs(self, x: Self) -> Self;
     /// Asks for the memory of a slice's first element ahead of its use.
@@ -549,4 +551,68 @@ fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V;
         *out = out.minus_product(y, scale);
     }
     out
+}
+
+/// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`: eight scalar products at a time.
+#[inline(always)]
+pub(super) fn solve_transposed<R: Real, V: Lanes<R>>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
+    for k in (0..n).step_by(BLOCK) {
+        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let known = products::<R, V>(columns, ld, 0, part(b, 0, k));
+        let mut x = [R::zero(); BLOCK];
+        crate::workspace::copy(&mut x, part(b, k, width));
+        for (c, (u, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate() {
+            let u = part(u, k, width);
+            let sum = x.iter().zip(u).take(c).fold(known, |s, (x, u)| s + *x * *u);
+            let value = (at(&x, c) - sum) / at(u, c);
+            put(&mut x, c, value);
+        }
+        crate::workspace::copy(part_mut(b, k, width), &x);
+    }
+    for k in (0..n).step_by(BLOCK).rev() {
+        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let known = products::<R, V>(columns, ld, k + width, part(b, k + width, n - k - width));
+        let mut x = [R::zero(); BLOCK];
+        crate::workspace::copy(&mut x, part(b, k, width));
+        for (c, (l, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate().rev() {
+            let l = part(l, k, width);
+            let sum = x.iter().zip(l).skip(c + 1).fold(known, |s, (x, l)| s + *x * *l);
+            let value = at(&x, c) - sum;
+            put(&mut x, c, value);
+        }
+        crate::workspace::copy(part_mut(b, k, width), &x);
+    }
+}
+
+/// Scalar products of `y` with the rows from `row` on of at most [`BLOCK`] columns.
+#[inline(always)]
+fn products<R: Real, V: Lanes<R>>(columns: &[R], ld: usize, row: usize, y: &[R]) -> [R; BLOCK] {
+    let mut sides: [&[R]; BLOCK] = [&[]; BLOCK];
+    for (side, column) in sides.iter_mut().zip(columns.chunks_exact(ld.max(1))) {
+        *side = part(column, row, y.len());
+    }
+    // Missing columns take the first one's place.
+    let [first, ..] = sides;
+    for side in &mut sides {
+        if side.is_empty() {
+            *side = first;
+        }
+    }
+    let mut sums = [V::splat(R::zero()); BLOCK];
+    let whole = y.len() - y.len() % V::WIDTH;
+    let mut done = 0;
+    while done < whole {
+        let Some(y) = y.get(done..).and_then(V::load) else { break };
+        for (sum, side) in sums.iter_mut().zip(&sides) {
+            let Some(side) = side.get(done..).and_then(V::load) else { break };
+            *sum = sum.minus_product(side, y);
+        }
+        done += V::WIDTH;
+    }
+    let mut products = [R::zero(); BLOCK];
+    for ((product, sum), side) in products.iter_mut().zip(sums).zip(&sides) {
+        let rest = part(side, whole, y.len() - whole).iter().zip(part(y, whole, y.len() - whole));
+        *product = rest.fold(-sum.sum(), |s, (x, y)| s + *x * *y);
+    }
+    products
 }
