@@ -11,7 +11,8 @@ use crate::articulation::twist_of;
 use crate::boundary::Nodes;
 use crate::configuration::Configuration;
 use crate::configuration::fill_targets;
-use crate::nystrom::{TargetColumns, add_pole_velocity, induced_velocity, induced_velocity_both};
+use crate::lu::{Machine, Task};
+use crate::nystrom::{LANES, TargetColumns, add_pole_velocity, induced_velocity, induced_velocity_both, lanes, sum_of};
 use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
 use crate::se2::Twist;
 use crate::workspace::{copy, part, part_mut};
@@ -70,9 +71,28 @@ pub(crate) fn each_induced<R: Real>(
 /// Twist of a boundary (0 for walls) from velocities of the links.
 #[inline]
 pub(crate) fn boundary_twist<R: Real>(c: &Configuration<'_, R>, rates: &[R], boundary: usize) -> Twist<R> {
-    match c.boundary(boundary).and_then(|(b, _)| b.link) {
-        Some(link) => twist_of(rates, link),
-        None => Twist::default(),
+    link_of(c, boundary).map_or_else(Twist::default, |link| twist_of(rates, link))
+}
+
+#[inline]
+fn link_of<R: Real>(c: &Configuration<'_, R>, boundary: usize) -> Option<usize> {
+    c.model.boundaries.get(boundary).and_then(|b| b.link)
+}
+
+/// Where a target's nodes x (own frame) are in its source's frame, z₀ + z₁ x, and how they move there, v₀ + v₁ x.
+struct Relative<R> {
+    place: [Complex<R>; 2],
+    rate: [Complex<R>; 2],
+}
+
+impl<R: Real> Relative<R> {
+    fn of(c: &Configuration<'_, R>, target: usize, source: usize, rates: &[R]) -> Self {
+        let (p, q) = (c.pose(target), c.pose(source));
+        let (vi, vj) = (boundary_twist(c, rates, target), boundary_twist(c, rates, source));
+        let shift = p.origin - q.origin;
+        let turn = q.unturned(p.turn);
+        let rate = [q.unturned(vi.linear - vj.at(shift)), perp(turn) * (vi.angular - vj.angular)];
+        Relative { place: [q.unturned(shift), turn], rate }
     }
 }
 
@@ -82,15 +102,10 @@ pub(crate) fn relative_rates<'a, R: Real>(
     c: &Configuration<'_, R>,
     rates: &[R],
 ) -> impl Iterator<Item = Complex<R>> + 'a {
-    let (p, q) = (c.pose(pair.target), c.pose(pair.source));
-    let (vi, vj) = (boundary_twist(c, rates, pair.target), boundary_twist(c, rates, pair.source));
+    let [v0, v1] = Relative::of(c, pair.target, pair.source, rates).rate;
     let nodes = pair.nodes;
-    let shift = p.origin - q.origin;
     // `nodes` borrows the model's store, not the pair.
-    nodes.x.iter().zip(nodes.y).map(move |(x, y)| {
-        let arm = p.turned(complex(*x, *y));
-        q.unturned(vi.at(arm) - vj.at(shift + arm))
-    })
+    nodes.x.iter().zip(nodes.y).map(move |(x, y)| v0 + v1 * complex(*x, *y))
 }
 
 /// Adds scale · Im Σ f (1, i, i·arm) to the gradient by the target's pose, and subtracts it (with the arm from the
@@ -103,21 +118,106 @@ pub(crate) fn add_pose_gradient<R: Real>(
     gradient: &mut [R],
 ) {
     let (p, q) = (c.pose(pair.target), c.pose(pair.source));
-    let shift = p.origin - q.origin;
-    let (mut force, mut turn_target, mut turn_source) = (Complex::default(), R::zero(), R::zero());
-    let values = weight.iter().zip(pair.hx).zip(pair.hy);
-    for (x, ((w, hx), hy)) in pair.nodes.points().zip(values) {
-        let f = complex(*hx, *hy) * q.turn.conj() * *w;
-        let arm = p.turned(x);
-        force += f;
-        // Im(i f arm) = Re(f arm)
-        turn_target += (f * arm).re;
-        turn_source += (f * (shift + arm)).re;
-    }
+    let mut sums = [Complex::default(); 2];
+    Machine::here().run(PairSums { weight, nodes: pair.nodes, hx: pair.hx, hy: pair.hy, sums: &mut sums });
+    let [force, moment] = sums.map(|sum| sum * q.turn.conj());
+    // Im(i f arm) = Re(f arm); the arm from the source is longer by the distance of the origins.
+    let turn_target = (moment * p.turn).re;
+    let turn_source = (force * (p.origin - q.origin)).re + turn_target;
     // (Im Σf, Im iΣf) = (Im, Re)
     let linear = complex(force.im, force.re) * scale;
     add_three(c, pair.target, linear, turn_target * scale, gradient);
     add_three(c, pair.source, -linear, -turn_source * scale, gradient);
+}
+
+/// Σ w h and Σ w h x over the nodes x of a target.
+struct PairSums<'a, 'b, R> {
+    weight: &'b [R],
+    nodes: Nodes<'a, R>,
+    hx: &'b [R],
+    hy: &'b [R],
+    sums: &'b mut [Complex<R>; 2],
+}
+
+impl<R: Real> Task for PairSums<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let (w, x, y) = (self.weight.as_chunks(), self.nodes.x.as_chunks(), self.nodes.y.as_chunks());
+        let (hx, hy) = (self.hx.as_chunks(), self.hy.as_chunks());
+        let mut sums = [[R::zero(); LANES]; 4];
+        for ((w, (x, y)), (hx, hy)) in w.0.iter().zip(x.0.iter().zip(y.0)).zip(hx.0.iter().zip(hy.0)) {
+            sums = pair_lanes([*w, *x, *y, *hx, *hy], sums);
+        }
+        let rest = [w.1, x.1, y.1, hx.1, hy.1].map(|rest| lanes(rest, R::zero()));
+        let [a, b, c, d] = pair_lanes(rest, sums).map(sum_of);
+        *self.sums = [complex(a, b), complex(c, d)];
+    }
+}
+
+#[inline(always)]
+fn pair_lanes<R: Real>(
+    [w, x, y, hx, hy]: [[R; LANES]; 5],
+    [mut a, mut b, mut c, mut d]: [[R; LANES]; 4],
+) -> [[R; LANES]; 4] {
+    let (mut fx, mut fy) = (hx, hy);
+    for ((fx, fy), w) in fx.iter_mut().zip(&mut fy).zip(w) {
+        (*fx, *fy) = (*fx * w, *fy * w);
+    }
+    for ((a, b), (fx, fy)) in a.iter_mut().zip(&mut b).zip(fx.iter().zip(&fy)) {
+        (*a, *b) = (*a + *fx, *b + *fy);
+    }
+    for (((c, d), (x, y)), (fx, fy)) in c.iter_mut().zip(&mut d).zip(x.iter().zip(&y)).zip(fx.iter().zip(&fy)) {
+        (*c, *d) = (*c + (*fx * *x - *fy * *y), *d + (*fx * *y + *fy * *x));
+    }
+    [a, b, c, d]
+}
+
+/// Places the nodes of a target in its source's frame, with weights times their rates there.
+struct BeginPair<'a, 'b, R> {
+    relative: Relative<R>,
+    nodes: Nodes<'a, R>,
+    weight: &'b [R],
+    columns: [&'b mut [R]; 6],
+}
+
+impl<R: Real> Task for BeginPair<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let Relative { place: [z0, z1], rate: [v0, v1] } = self.relative;
+        let [zx, zy, fx, fy, hx, hy] = self.columns;
+        let points = self.nodes.x.iter().zip(self.nodes.y);
+        for ((zx, zy), (x, y)) in zx.iter_mut().zip(zy.iter_mut()).zip(points.clone()) {
+            *zx = z0.re + (z1.re * *x - z1.im * *y);
+            *zy = z0.im + (z1.re * *y + z1.im * *x);
+        }
+        for (((fx, fy), (x, y)), w) in fx.iter_mut().zip(fy.iter_mut()).zip(points).zip(self.weight) {
+            *fx = (v0.re + (v1.re * *x - v1.im * *y)) * *w;
+            *fy = (v0.im + (v1.re * *y + v1.im * *x)) * *w;
+        }
+        hx.fill(R::zero());
+        hy.fill(R::zero());
+    }
+}
+
+/// Adds Im(ż h) at a target's nodes to `out`.
+struct AddRates<'a, 'b, R> {
+    rate: [Complex<R>; 2],
+    nodes: Nodes<'a, R>,
+    hx: &'b [R],
+    hy: &'b [R],
+    out: &'b mut [R],
+}
+
+impl<R: Real> Task for AddRates<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let [v0, v1] = self.rate;
+        let h = self.hx.iter().zip(self.hy);
+        for ((out, (x, y)), (hx, hy)) in self.out.iter_mut().zip(self.nodes.x.iter().zip(self.nodes.y)).zip(h) {
+            let (re, im) = (v0.re + (v1.re * *x - v1.im * *y), v0.im + (v1.re * *y + v1.im * *x));
+            *out += re * *hy + im * *hx;
+        }
+    }
 }
 
 /// Adds to a boundary's three reals, if it moves.
@@ -128,7 +228,7 @@ pub(crate) fn add_three<R: Real>(
     angular: R,
     out: &mut [R],
 ) {
-    if let Some(link) = c.boundary(boundary).and_then(|(b, _)| b.link) {
+    if let Some(link) = link_of(c, boundary) {
         for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip([linear.re, linear.im, angular]) {
             *o += x;
         }
@@ -148,23 +248,20 @@ pub(crate) fn pair_pass<R: Real>(
     out.rate.fill(R::zero());
     out.transposed.fill(R::zero());
     out.gradient.fill(R::zero());
+    let machine = Machine::here();
     for (j, source, source_nodes) in c.each_boundary() {
         for (i, target, nodes) in c.each_boundary() {
             if i == j || (source.link.is_none() && target.link.is_none()) {
                 continue;
             }
             let n = target.nodes;
-            let (zx, zy) = (part_mut(s.zx, 0, n), part_mut(s.zy, 0, n));
-            fill_targets(&nodes, c.pose(i), c.pose(j), zx, zy);
-            let (hx, hy) = (part_mut(s.hx, 0, n), part_mut(s.hy, 0, n));
-            hx.fill(R::zero());
-            hy.fill(R::zero());
-            let (fx, fy) = (part_mut(s.fx, 0, n), part_mut(s.fy, 0, n));
             let weights = part(adjoint, target.first, n);
-            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx: &[], hy: &[] };
-            for (((fx, fy), zd), w) in fx.iter_mut().zip(fy.iter_mut()).zip(relative_rates(&pair, c, qd)).zip(weights) {
-                (*fx, *fy) = (zd.re * *w, zd.im * *w);
-            }
+            let relative = Relative::of(c, i, j, qd);
+            let rate = relative.rate;
+            let columns = [&mut *s.zx, &mut *s.zy, &mut *s.fx, &mut *s.fy, &mut *s.hx, &mut *s.hy];
+            let [zx, zy, fx, fy, hx, hy] = columns.map(|column| part_mut(column, 0, n));
+            let columns = [&mut *zx, &mut *zy, &mut *fx, &mut *fy, &mut *hx, &mut *hy];
+            machine.run(BeginPair { relative, nodes, weight: weights, columns });
             let mut columns = TargetColumns { zx, zy, fx, fy, hx: &mut *hx, hy: &mut *hy };
             let transposed = part_mut(out.transposed, source.first, source.nodes);
             induced_velocity_both(
@@ -176,12 +273,8 @@ pub(crate) fn pair_pass<R: Real>(
             );
             let w = part(density, source.first, source.nodes);
             add_pole_velocity(c, (j, source), target.first, [w, &[]], [fx, fy], [hx, hy], transposed);
-            let pair = Induced { hx, hy, ..pair };
-            let rates = relative_rates(&pair, c, qd);
-            let h = pair.hx.iter().zip(pair.hy);
-            for ((a, zd), (hx, hy)) in part_mut(out.rate, pair.first, pair.len).iter_mut().zip(rates).zip(h) {
-                *a += zd.re * *hy + zd.im * *hx;
-            }
+            machine.run(AddRates { rate, nodes, hx, hy, out: part_mut(out.rate, target.first, n) });
+            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy };
             add_pose_gradient(&pair, c, weights, R::one(), out.gradient);
         }
     }

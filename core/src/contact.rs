@@ -279,7 +279,8 @@ pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) 
 pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place)> {
     let all = || model.each_boundary().map(|(i, record, nodes)| (i, Placed { record, nodes, pose: poses.get(i) }));
     for (i, a) in all() {
-        for (j, b) in all().filter(|(j, _)| *j != i) {
+        // A node of `a` is where `a` is: within its reach.
+        for (j, b) in all().filter(|(j, b)| *j != i && apart(&a, b) <= R::zero()) {
             let Some(z) = targets(&a.nodes, a.pose, b.pose).next() else { continue };
             let inside = encloses(&b.nodes, z);
             if b.record.sign > R::zero() && !inside {

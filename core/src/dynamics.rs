@@ -80,13 +80,25 @@ impl<R: Real> Work<'_, R> {
             }
             self.solution.fill(R::zero());
         }
-        let system = system!(self);
+        let mut system = system!(self);
         // ½ T₂ + ½ M_hᵀ w = Xᵀ [½ B w − A⁻ᵀ (l + B w)]
         fill_flux(c, self.spare, self.second);
         add_potential_moments(c, self.second, R::HALF, self.force);
         axpy(self.second, R::one(), self.transposed);
-        system.factors().solve_transposed(self.second);
-        add_potential_moments(c, self.second, -R::one(), self.force);
+        if model.head.plan.free_coordinates == 3 * links {
+            // The columns are the motions of each link by itself: Xᵀ A⁻ᵀ = −½ uᵀ.
+            for (k, f) in self.inertial.iter_mut().enumerate() {
+                *f = inner(system.column(k), self.second) * R::HALF;
+            }
+            for i in 0..links {
+                let (f, turned) = (twist_of(self.force, i), twist_of(self.inertial, i));
+                let linear = c.pose(model.head.plan.walls + i).unturned(turned.linear);
+                put_three(self.force, i, f.linear + linear, f.angular + turned.angular);
+            }
+        } else {
+            system.factors().solve_transposed(self.second);
+            add_potential_moments(c, self.second, -R::one(), self.force);
+        }
         // ½ T₁ + ½ M_h w = ½ Bᵀ [A⁻¹ (a − 2 X w) + X w]
         add_interior_potential(c, self.spare, -R::TWO, self.solution);
         system.factors().solve(self.solution);

@@ -92,47 +92,21 @@ pub(crate) fn assemble<R: Real>(
         if anew {
             fill_self_block(&nodes, source.sign, completion(source), &mut a, &mut g);
         }
-        for (k, (x, dx)) in nodes.points().zip(nodes.tangents()).enumerate() {
-            let (column, weight) = (source.first + k, dx * factor);
-            let ready_at = |links: usize, walls_at: usize| match source.link {
-                Some(_) => links + k * ready_len,
-                None => walls_at + column * walls,
-            };
-            let entries = part_mut(matrix, column * ld, n);
-            if !anew {
-                let from = ready_at(source.self_at, c.model.head.walls_at);
-                copy(part_mut(entries, ready, ready_len), part(store, from, ready_len));
-            }
-            for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
-                kernel_column(
-                    machine,
-                    part(zx, from, len),
-                    part(zy, from, len),
-                    x,
-                    weight,
-                    part_mut(entries, from, len),
-                );
-            }
-            if regular.is_empty() {
-                continue;
-            }
-            let entries = part_mut(regular, column * n, n);
-            if !anew {
-                let from = ready_at(source.regular_at, c.model.head.walls_regular_at);
-                copy(part_mut(entries, ready, ready_len), part(store, from, ready_len));
-            }
-            for (from, len) in [(0, ready), (ready + ready_len, n - ready - ready_len)] {
-                // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
-                let turned = complex(weight.im, -weight.re);
-                kernel_column(
-                    machine,
-                    part(zx, from, len),
-                    part(zy, from, len),
-                    x,
-                    turned,
-                    part_mut(entries, from, len),
-                );
-            }
+        let ready_at = |links: usize, walls_at: usize| match source.link {
+            _ if anew => &[],
+            Some(_) => part(store, links, ready_len * source.nodes),
+            None => part(store, walls_at + source.first * walls, ready_len * source.nodes),
+        };
+        let (zx, zy) = (&*zx, &*zy);
+        let own = ready_at(source.self_at, c.model.head.walls_at);
+        let columns = part_mut(matrix, source.first * ld, source.nodes * ld);
+        let parts = (ready, ready_len);
+        machine.run(BlockColumns { nodes, factor: complex(factor, R::zero()), zx, zy, parts, own, columns, ld });
+        if !regular.is_empty() {
+            // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
+            let own = ready_at(source.regular_at, c.model.head.walls_regular_at);
+            let (columns, factor) = (part_mut(regular, source.first * n, source.nodes * n), complex(R::zero(), -factor));
+            machine.run(BlockColumns { nodes, factor, zx, zy, parts, own, columns, ld: n });
         }
         if !source.table(store).is_empty() {
             let (mut a, mut g) = (
@@ -175,28 +149,60 @@ pub(crate) fn add_pole_velocity<R: Real>(
     }
 }
 
-/// −Im(weight/(g − z)) for a column of targets.
-#[inline]
-fn kernel_column<R: Real>(machine: Machine, zx: &[R], zy: &[R], g: Complex<R>, weight: Complex<R>, out: &mut [R]) {
-    machine.run(KernelColumn { zx, zy, g, weight, out });
+/// The columns of one boundary: −Im(weight/(g − z)) with the targets z; in the rows `parts` (first, count) what is ready
+/// made instead, if anything is.
+struct BlockColumns<'a, 'b, R> {
+    nodes: Nodes<'a, R>,
+    /// Weights are tangents times this.
+    factor: Complex<R>,
+    zx: &'b [R],
+    zy: &'b [R],
+    parts: (usize, usize),
+    own: &'a [R],
+    columns: &'b mut [R],
+    ld: usize,
 }
 
-struct KernelColumn<'a, R> {
-    zx: &'a [R],
-    zy: &'a [R],
-    g: Complex<R>,
-    weight: Complex<R>,
-    out: &'a mut [R],
-}
-
-impl<R: Real> Task for KernelColumn<'_, R> {
+impl<R: Real> Task for BlockColumns<'_, '_, R> {
     #[inline(always)]
     fn run(self) {
-        let (g, weight) = (self.g, self.weight);
-        for ((a, x), y) in self.out.iter_mut().zip(self.zx).zip(self.zy) {
-            let (dx, dy) = (g.re - *x, g.im - *y);
-            *a = (weight.re * dy - weight.im * dx) / (dx * dx + dy * dy);
+        let (ready, len) = self.parts;
+        let (before, after) = (ready, self.zx.len().saturating_sub(ready + len));
+        let first = [part(self.zx, 0, before), part(self.zy, 0, before)];
+        let last = [part(self.zx, ready + len, after), part(self.zy, ready + len, after)];
+        let mut own = self.own.chunks_exact(len.max(1));
+        let nodes = self.nodes.points().zip(self.nodes.tangents());
+        for ((g, dg), column) in nodes.zip(self.columns.chunks_mut(self.ld.max(1))) {
+            let weight = dg * self.factor;
+            let (above, rest) = column.split_at_mut_checked(before).unwrap_or((&mut [], &mut []));
+            let (middle, below) = rest.split_at_mut_checked(len).unwrap_or((&mut [], &mut []));
+            if let Some(own) = own.next() {
+                copy(middle, own);
+            }
+            kernel_column(first, g, weight, above);
+            kernel_column(last, g, weight, below);
         }
+    }
+}
+
+/// −Im(weight/(g − z)) for targets z, in lanes that vectorize.
+#[inline(always)]
+fn kernel_column<R: Real>([zx, zy]: [&[R]; 2], g: Complex<R>, weight: Complex<R>, out: &mut [R]) {
+    let value = |x: R, y: R| {
+        let (dx, dy) = (g.re - x, g.im - y);
+        (weight.re * dy - weight.im * dx) / (dx * dx + dy * dy)
+    };
+    let ((x8, x), (y8, y)) = (zx.as_chunks::<LANES>(), zy.as_chunks::<LANES>());
+    let (out8, out) = part_mut(out, 0, zx.len()).as_chunks_mut::<LANES>();
+    for ((out, x), y) in out8.iter_mut().zip(x8).zip(y8) {
+        let mut lanes = [R::zero(); LANES];
+        for ((lane, x), y) in lanes.iter_mut().zip(x).zip(y) {
+            *lane = value(*x, *y);
+        }
+        *out = lanes;
+    }
+    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
+        *out = value(*x, *y);
     }
 }
 
@@ -265,10 +271,11 @@ impl<R: Real> Task for BothVelocities<'_, '_, R> {
             if !rest[0].is_empty() {
                 sums = both_lanes(g, c, rest, [hx.into_remainder(), hy.into_remainder()], sums);
             }
-            let [re, im] = sums;
-            let pairs = re.iter().zip(&im);
-            let sum = pairs.fold(Complex::default(), |s: Complex<R>, (re, im)| s + complex(*re, *im));
-            *out += (weight * sum).im;
+            let [re, mut im] = sums;
+            for (im, re) in im.iter_mut().zip(re) {
+                *im = weight.re * *im + weight.im * re;
+            }
+            *out += sum_of(im);
         }
     }
 }
@@ -310,9 +317,17 @@ fn both_lanes<R: Real>(
     [re, im]
 }
 
+/// Sum of lanes, by halves.
+#[inline(always)]
+pub(crate) fn sum_of<R: Real>([a, b, c, d, e, f, g, h]: [R; LANES]) -> R {
+    let halves = [a + e, b + f, c + g, d + h];
+    let [a, b, c, d] = halves;
+    (a + c) + (b + d)
+}
+
 /// A vector of lanes; the missing ones are filled.
 #[inline(always)]
-fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
+pub(crate) fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
     from.first_chunk().copied().unwrap_or_else(|| {
         let mut lanes = [fill; LANES];
         copy(&mut lanes, from);
@@ -329,7 +344,7 @@ fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
 }
 
 /// Lanes of the sums over targets.
-const LANES: usize = 8;
+pub(crate) const LANES: usize = 8;
 
 /// Columns over the targets of a pair: their nodes z in the source's frame, weights f, and the velocity h that adds up.
 pub(crate) struct TargetColumns<'a, R> {

@@ -11,7 +11,7 @@ use crate::potentials::{
 };
 use crate::scalar::{Complex, Real};
 use crate::status::{Error, Result, Status};
-use crate::workspace::{at, axpy, buffers, copy, inner, part, part_mut, put};
+use crate::workspace::{at, axpy, buffers, copy, part, part_mut, put};
 
 /// Numbers that the buffers' lengths follow from.
 #[derive(Clone, Copy, Debug)]
@@ -274,26 +274,38 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
         let mut asymmetry = R::zero();
+        // What does not move adds nothing.
+        let moves = |column: &[R]| {
+            let first = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
+            (first, column.iter().rposition(|x| *x != R::zero()).map_or(0, |last| last + 1 - first))
+        };
+        let product = |column: &[R], (first, count): (usize, usize), momentum: &[R]| {
+            let pairs = part(column, first, count).iter().zip(part(momentum, first, count));
+            pairs.fold(R::zero(), |s, (x, y)| s + *x * *y)
+        };
         for k in 0..n {
-            let column = part(self.jacobian, k * rows, rows);
+            let (column, momentum) = (part(self.jacobian, k * rows, rows), part(self.momenta, k * rows, rows));
+            let own = moves(column);
+            copy(self.spare, column);
+            for (p, l) in self.spare.as_chunks_mut::<3>().0.iter_mut().zip(model.links) {
+                for (p, m) in p.iter_mut().zip([l.mass, l.mass, l.inertia]) {
+                    *p *= m;
+                }
+            }
             // The diagonal first: the asymmetry of the others is measured by it.
             for j in (0..=k).rev() {
                 let other = part(self.jacobian, j * rows, rows);
-                let halves = [
-                    inner(other, part(self.momenta, k * rows, rows)),
-                    inner(column, part(self.momenta, j * rows, rows)),
-                ];
-                let mut sum = (halves[0] + halves[1]) * R::HALF;
-                for (i, l) in model.links.iter().enumerate() {
-                    let (a, b) = (twist_of(column, i), twist_of(other, i));
-                    sum += l.mass * crate::scalar::dot(a.linear, b.linear) + l.inertia * a.angular * b.angular;
-                }
+                let moved = moves(other);
+                let halves =
+                    [product(other, moved, momentum), product(column, own, part(self.momenta, j * rows, rows))];
+                let sum = (halves[0] + halves[1]) * R::HALF + product(other, moved, self.spare);
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
-                let scale = at(self.reduced, k * n + k).sqrt() * at(self.reduced, j * n + j).sqrt();
-                if scale > R::zero() {
-                    asymmetry = asymmetry.max((halves[0] - halves[1]).abs() / scale);
+                if j == k {
+                    put(self.reduced_pivots, k, if sum > R::zero() { R::one() / sum.sqrt() } else { R::zero() });
                 }
+                let scale = at(self.reduced_pivots, k) * at(self.reduced_pivots, j);
+                asymmetry = asymmetry.max((halves[0] - halves[1]).abs() * scale);
             }
         }
         put(self.indicators, 0, asymmetry.max(model.head.lone_resolution[0]));
@@ -326,11 +338,20 @@ impl<R: Real> Work<'_, R> {
             let free = model.head.plan.free_coordinates;
             let rates = model.coordinates.iter().zip(self.ds.iter()).filter(|(c, _)| c.control != Control::Prescribed);
             let last = core::iter::repeat_n(R::one(), (self.jacobian.len() / rows.max(1)).saturating_sub(free));
-            system.combine(rates.map(|(_, ds)| *ds).chain(last), self.density);
+            let rates = rates.map(|(_, ds)| *ds).chain(last);
+            system.combine(rates.clone(), self.density);
+            self.spare.fill(R::zero());
+            for (rate, momentum) in rates.zip(self.momenta.chunks_exact(rows.max(1))) {
+                axpy(self.spare, rate, momentum);
+            }
         } else {
             self.density.fill(R::zero());
             add_interior_potential(c, self.v, -R::TWO, self.density);
             system.factors().solve(self.density);
+            copy(self.solution, self.density);
+            add_interior_potential(c, self.v, R::one(), self.solution);
+            flux_moments(c, self.solution, self.spare);
+            to_world(c, model.head.fluid_density, self.spare);
         }
         fill_flux(c, self.v, self.adjoint);
         // ½ Xᵀ B v now, −Xᵀ λ after the solve: M_hᵀ v = Xᵀ (B v − 2 λ).
@@ -338,11 +359,8 @@ impl<R: Real> Work<'_, R> {
         add_potential_moments(c, self.adjoint, R::HALF, self.momentum);
         system.factors().solve_transposed(self.adjoint);
         add_potential_moments(c, self.adjoint, -R::one(), self.momentum);
-        copy(self.solution, self.density);
-        add_interior_potential(c, self.v, R::one(), self.solution);
-        flux_moments(c, self.solution, self.spare);
-        axpy(self.momentum, R::HALF, self.spare);
         to_world(c, model.head.fluid_density, self.momentum);
+        axpy(self.momentum, R::HALF, self.spare);
     }
 }
 
