@@ -61,9 +61,10 @@ pub(crate) fn fill_walls<R: Real>(
 }
 
 /// Assembles A (leading dimension `ld`) and, if `regular` is not empty, Re G (leading dimension N).
-/// `zx`, `zy` are scratch of length N. O(N²).
+/// `zx`, `zy` are scratch of length N. `keep_walls`: the walls' own rows and columns of A stay as they are. O(N²).
 pub(crate) fn assemble<R: Real>(
     c: &Configuration<'_, R>,
+    keep_walls: bool,
     matrix: &mut [R],
     ld: usize,
     regular: &mut [R],
@@ -98,7 +99,7 @@ pub(crate) fn assemble<R: Real>(
             None => part(store, walls_at + source.first * walls, ready_len * source.nodes),
         };
         let (zx, zy) = (&*zx, &*zy);
-        let own = ready_at(source.self_at, c.model.head.walls_at);
+        let own = if source.link.is_none() && keep_walls { &[] } else { ready_at(source.self_at, c.model.head.walls_at) };
         let columns = part_mut(matrix, source.first * ld, source.nodes * ld);
         let parts = (ready, ready_len);
         machine.run(BlockColumns { nodes, factor: complex(factor, R::zero()), zx, zy, parts, own, columns, ld });

@@ -161,7 +161,7 @@ fn assembled(in_tank: bool, quadrature: Quadrature) -> Assembled {
                 nodes.push(Node { point, tangent, sign: b.sign, first: b.first, count: b.nodes });
             }
         }
-        assemble(c, &mut matrix, n, &mut regular, &mut zx, &mut zy);
+        assemble(c, false, &mut matrix, n, &mut regular, &mut zx, &mut zy);
     });
     Assembled { sim, matrix, regular, nodes }
 }

@@ -8,12 +8,12 @@
 use crate::articulation::{put_three, twist_of};
 use crate::boundary::Nodes;
 use crate::configuration::Configuration;
-use crate::lu::{Factors, Machine, Task, factor_staggered};
+use crate::lu::{Factors, Machine, Task, factor, factor_further};
 use crate::nystrom::assemble;
 use crate::scalar::{Complex, Real, complex, dot};
 use crate::se2::Twist;
 use crate::status::Result;
-use crate::workspace::{axpy, inner, part, part_mut};
+use crate::workspace::{at, axpy, inner, part, part_mut, put};
 
 /// Three reals per link, world to link frame (linear parts turned).
 pub(crate) fn to_link_frames<R: Real>(c: &Configuration<'_, R>, world: &[R], out: &mut [R]) {
@@ -150,6 +150,8 @@ pub(crate) struct BoundarySystem<'a, R> {
     pub unknowns: usize,
     pub pivots: &'a mut [R],
     pub regular: &'a mut [R],
+    /// Not 0 while the walls' own rows and columns of `matrix` hold their factors.
+    pub walls_ready: &'a mut [R],
 }
 
 impl<R: Real> BoundarySystem<'_, R> {
@@ -159,9 +161,19 @@ impl<R: Real> BoundarySystem<'_, R> {
     }
 
     /// Assembles, sets the first right-hand sides to −2 X v for the link-frame motions in `motions` (columns of
-    /// three reals per link), factorizes and solves. O(N³).
+    /// three reals per link), factorizes and solves. O(N³). The factors of the walls alone, which come first, are kept: they
+    /// are the model's as long as no wall has nodes of its own here.
     pub(crate) fn solve(&mut self, c: &Configuration<'_, R>, motions: &[R], zx: &mut [R], zy: &mut [R]) -> Result<()> {
-        assemble(c, self.matrix, self.ld, self.regular, zx, zy);
+        let (walls, regraded) = (c.model.head.wall_nodes, c.walls_regraded());
+        let mut ready = at(self.walls_ready, 0) != R::zero() && !regraded;
+        assemble(c, ready, self.matrix, self.ld, self.regular, zx, zy);
+        if walls > 0 && !regraded && !ready {
+            ready = factor(part_mut(self.matrix, 0, walls * self.ld), self.ld, walls, self.pivots).is_ok();
+            if !ready {
+                assemble(c, false, self.matrix, self.ld, self.regular, zx, zy);
+            }
+        }
+        put(self.walls_ready, 0, if ready { R::one() } else { R::zero() });
         let rows = 3 * c.model.links.len();
         let columns = motions.chunks_exact(rows.max(1)).len();
         let first = self.unknowns * self.ld;
@@ -187,7 +199,8 @@ impl<R: Real> BoundarySystem<'_, R> {
         };
         let begun = |row: usize| motions.chunks_exact(rows.max(1)).rposition(|v| begins(v) < row).map_or(0, |k| k + 1);
         let used = (self.unknowns + columns) * self.ld;
-        factor_staggered(part_mut(self.matrix, 0, used), self.ld, self.unknowns, self.pivots, begun)?;
+        let done = if ready { walls } else { 0 };
+        factor_further(part_mut(self.matrix, 0, used), self.ld, self.unknowns, done, self.pivots, begun)?;
         let Some((lu, rest)) = self.matrix.split_at_mut_checked(self.unknowns * self.ld) else {
             return Err(crate::status::Status::Internal.into());
         };

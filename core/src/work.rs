@@ -92,6 +92,7 @@ buffers! {
         indicators: 2,
         /// Where in its memory the matrix begins.
         matrix_at: 1,
+        walls_ready: 1,
         matrix: d.ld * (d.unknowns + d.columns) + slack::<R>(d.unknowns),
         pivots: d.unknowns,
         regular: d.circulating * d.circulating,
@@ -130,6 +131,7 @@ macro_rules! system {
             unknowns: $w.pivots.len(),
             pivots: $w.pivots,
             regular: $w.regular,
+            walls_ready: $w.walls_ready,
         }
     };
 }
@@ -258,9 +260,11 @@ impl<R: Real> Work<'_, R> {
         }
         counters.factorizations += 1;
         // Kept as a number, so that memory that is moved later keeps its meaning.
-        let to_line = self.matrix.as_ptr().align_offset(LINE);
-        let fits = to_line <= slack::<R>(self.pivots.len());
-        put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
+        if at(self.walls_ready, 0) == R::zero() {
+            let to_line = self.matrix.as_ptr().align_offset(LINE);
+            let fits = to_line <= slack::<R>(self.pivots.len());
+            put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
+        }
         let mut system = system!(self);
         system.solve(c, self.moving, self.zx, self.zy)?;
         system.momenta(c, self.moving, [self.hx, self.hy, self.fx], self.momenta);

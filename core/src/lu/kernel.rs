@@ -8,7 +8,7 @@
 #![allow(unsafe_code)]
 
 use super::Rows;
-use super::portable::Portable;
+use super::portable::{Portable, divide};
 #[cfg(target_arch = "x86_64")]
 use super::tile::{self, Lanes};
 use crate::scalar::Real;
@@ -20,6 +20,10 @@ pub(super) trait Kernel<R: Real>: Copy {
     /// Elimination with partial pivoting of at most [`super::BLOCK`] columns from row `k` on. Returns the smallest and the
     /// largest pivot; `None` when there is none.
     fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)>;
+    /// A ← A U⁻¹ in the rows `to ..` of a block of at most [`super::BLOCK`] columns, whose rows `from ..` hold U.
+    fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
+        divide(block, ld, rows);
+    }
     /// Solves with the unit lower triangle in rows `k ..` of the columns `left` (at most [`super::BLOCK`]).
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
     /// Solves with the upper triangle there.
@@ -172,6 +176,15 @@ mod x86 {
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(block, ld, n, k, pivots) }
+                }
+                #[inline(always)]
+                fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
+                    #[target_feature(enable = $features)]
+                    fn compiled<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
+                        tile::divide::<R, R::$vector>(block, ld, rows);
+                    }
+                    // SAFETY: `self` proves that the machine has these instructions.
+                    unsafe { compiled(block, ld, rows) }
                 }
                 #[inline(always)]
                 fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {

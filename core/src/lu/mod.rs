@@ -67,19 +67,20 @@ macro_rules! with_kernel {
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
 pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R]) -> Result<R> {
-    factor_staggered(a, ld, n, pivots, |_| usize::MAX)
+    factor_further(a, ld, n, 0, pivots, |_| usize::MAX)
 }
 
-/// The same where right-hand sides begin with zeros: `begun(row)` tells how many of the columns, from the first on, may hold
-/// anything else above that row.
-pub(crate) fn factor_staggered<R: Real>(
+/// The same where the first `done` rows and columns are factorized already, with their pivots, and where right-hand sides
+/// begin with zeros: `begun(row)` tells how many of these columns, from the first on, may hold anything else above that row.
+pub(crate) fn factor_further<R: Real>(
     a: &mut [R],
     ld: usize,
     n: usize,
+    done: usize,
     pivots: &mut [R],
     begun: impl Fn(usize) -> usize,
 ) -> Result<R> {
-    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, pivots, begun))
+    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, done, pivots, begun))
 }
 
 fn factor_by<R: Real, K: Kernel<R>>(
@@ -87,6 +88,7 @@ fn factor_by<R: Real, K: Kernel<R>>(
     a: &mut [R],
     ld: usize,
     n: usize,
+    done: usize,
     pivots: &mut [R],
     begun: impl Fn(usize) -> usize,
 ) -> Result<R> {
@@ -95,7 +97,16 @@ fn factor_by<R: Real, K: Kernel<R>>(
     if n > ld {
         return Err(Status::Internal.into());
     }
-    let (smallest, largest) = eliminate(kernel, matrix, ld, n, 0, pivots).ok_or(Status::Singular)?;
+    let (left, right) = matrix.split_at_mut_checked(done * ld).ok_or(Status::Internal)?;
+    let (first, second) = pivots.split_at_mut_checked(done).ok_or(Status::Internal)?;
+    extend(kernel, left, ld, n, done, 0);
+    exchange_all(right, ld, 0, first);
+    reduce(kernel, left, ld, n, 0, right);
+    let (mut smallest, mut largest) = eliminate(kernel, right, ld, n, done, second).ok_or(Status::Singular)?;
+    exchange_all(left, ld, done, second);
+    for pivot in left.iter().step_by(ld + 1) {
+        (smallest, largest) = (smallest.min(pivot.abs()), largest.max(pivot.abs()));
+    }
     let straight = exchange_all(columns, ld, 0, pivots);
     let width = if straight { (n / (8 * BLOCK) * BLOCK).clamp(2 * BLOCK, DEPTH) } else { DEPTH };
     for (i, left) in matrix.chunks((width * ld).max(1)).enumerate() {
@@ -132,6 +143,19 @@ fn eliminate<R: Real, K: Kernel<R>>(
     let (low, high) = eliminate(kernel, right, ld, n, k + half, second)?;
     exchange_all(left, ld, k + half, second);
     Some((smallest.min(low), largest.max(high)))
+}
+
+/// The multipliers of the rows `top ..` for columns whose rows above are factorized already: A U⁻¹.
+fn extend<R: Real, K: Kernel<R>>(kernel: K, block: &mut [R], ld: usize, n: usize, top: usize, k: usize) {
+    let width = block.len().checked_div(ld).unwrap_or(0);
+    if width <= BLOCK {
+        return kernel.divide(block, ld, Rows { to: top, count: n - top, from: k });
+    }
+    let half = width.div_ceil(2 * BLOCK) * BLOCK;
+    let Some((left, right)) = block.split_at_mut_checked(half * ld) else { return };
+    extend(kernel, left, ld, n, top, k);
+    kernel.subtract(left, ld, Rows { to: top, count: n - top, from: k }, right);
+    extend(kernel, right, ld, n, top, k + half);
 }
 
 /// What the eliminated columns `left`, from column `k` on, do to the columns `right`: rows `k ..` are solved with the unit
@@ -291,7 +315,7 @@ mod tests {
         let mut all = Vec::new();
         for level in Level::all() {
             let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::zero(); n]);
-            with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, &mut pivots, |_| usize::MAX)).unwrap();
+            with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
             all.push((lu, pivots));
         }
         all
@@ -321,6 +345,72 @@ mod tests {
         largest_difference::<f64>(300, 13, 1e-9);
         for n in [5, 8, 31, 33] {
             largest_difference::<f32>(n, 5, 1e-2);
+        }
+    }
+
+    /// Dominated by its diagonal, so that no rows need to be exchanged.
+    fn dominant(n: usize, ld: usize) -> Vec<f64> {
+        let mut a: Vec<f64> = random(n * ld, 9).iter().map(|x| x / n as f64).collect();
+        a.iter_mut().step_by(ld + 1).for_each(|x| *x += 1.0);
+        a
+    }
+
+    #[test]
+    fn a_block_that_turns_out_to_need_an_exchange_gets_it() {
+        let (n, ld) = (61, 64);
+        for (row, column) in [(60, 3), (59, 17), (9, 8), (33, 30)] {
+            let mut a = dominant(n, ld);
+            a[column * ld + row] = 3.0;
+            for (lu, pivots) in factors_of_all(&a, ld, n) {
+                assert_eq!(pivots[column], row as f64);
+                let factors = Factors { lu: &lu, ld, pivots: &pivots };
+                let mut x: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[j * ld + i]).sum()).collect();
+                factors.solve(&mut x);
+                assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-13));
+            }
+        }
+    }
+
+    #[test]
+    fn a_factorization_continued_from_its_first_block_solves_the_system() {
+        for level in Level::all() {
+            for (n, done) in [(64, 0), (64, 24), (61, 13), (40, 39), (90, 51), (7, 3)] {
+                let ld = n + 3;
+                for a in [dominant(n, ld), random(n * ld, 4)] {
+                    let (mut lu, mut pivots) = (a.clone(), std::vec![0.0; n]);
+                    let sum = |i: usize| (0..n).map(|j| a[j * ld + i]).sum::<f64>();
+                    lu.extend((0..n).map(sum).chain([0.0; 3]));
+                    with_kernel!(level, kernel => {
+                        factor_by(kernel, &mut lu[..done * ld], ld, done, 0, &mut pivots, |_| 1).unwrap();
+                        factor_by(kernel, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
+                    });
+                    let (lu, carried) = lu.split_at(n * ld);
+                    let factors = Factors { lu, ld, pivots: &pivots };
+                    let (mut x, mut y) = (carried[..n].to_vec(), (0..n).map(sum).collect::<Vec<_>>());
+                    factors.back_substitute(&mut x);
+                    factors.solve(&mut y);
+                    assert!(x.iter().chain(&y).all(|x| (x - 1.0).abs() < 1e-9), "n = {n}, {done} done");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn zeros_at_the_top_of_right_hand_sides_need_not_be_carried() {
+        let (n, ld) = (60, 64);
+        let columns = |a: &mut Vec<f64>| {
+            for k in 0..5 {
+                a.extend((0..ld).map(|i| if i < 12 * k || i >= n { 0.0 } else { (i * (k + 1)) as f64 % 7.0 }));
+            }
+        };
+        for mut a in [dominant(n, ld), random(n * ld, 4)] {
+            columns(&mut a);
+            let (mut all, mut some, mut pivots) = (a.clone(), a, std::vec![0.0; n]);
+            factor(&mut all, ld, n, &mut pivots).unwrap();
+            factor_further(&mut some, ld, n, 0, &mut pivots, |row| row.div_ceil(12)).unwrap();
+            for (x, y) in all.chunks(ld).zip(some.chunks(ld)) {
+                assert!(x[..n].iter().zip(y).all(|(x, y)| (x - y).abs() < 1e-9 * (1.0 + x.abs())));
+            }
         }
     }
 

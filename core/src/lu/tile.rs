@@ -229,12 +229,9 @@ fn eliminate_straight<R: Real, V: Lanes<R>, const H: usize>(
     if pivots.len() != BLOCK {
         return None;
     }
-    let (first, second) = halves(block.get_mut(..BLOCK * ld)?);
-    let ((a, b), (c, d)) = (halves(first), halves(second));
-    let (((a, b), (c, d)), ((e, f), (g, h))) = ((halves(a), halves(b)), (halves(c), halves(d)));
     let mut tops = [[R::zero(); BLOCK]; BLOCK];
     let mut columns: [&mut [R]; BLOCK] = [&mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut []];
-    for ((to, below), column) in tops.iter_mut().zip(&mut columns).zip([a, b, c, d, e, f, g, h]) {
+    for ((to, below), column) in tops.iter_mut().zip(&mut columns).zip(columns_of(block, ld)?) {
         let (top, rest) = part_mut(column, k, n - k).split_first_chunk_mut::<BLOCK>()?;
         (*to, *below) = (*top, rest);
     }
@@ -262,6 +259,32 @@ fn eliminate_straight<R: Real, V: Lanes<R>, const H: usize>(
         crate::workspace::copy(part_mut(block, c * ld + k, BLOCK), top);
     }
     Some((smallest, largest))
+}
+
+/// The columns of a whole block.
+#[inline(always)]
+fn columns_of<R>(block: &mut [R], ld: usize) -> Option<[&mut [R]; BLOCK]> {
+    let (first, second) = halves(block.get_mut(..BLOCK * ld)?);
+    let ((a, b), (c, d)) = (halves(first), halves(second));
+    let (((a, b), (c, d)), ((e, f), (g, h))) = ((halves(a), halves(b)), (halves(c), halves(d)));
+    Some([a, b, c, d, e, f, g, h])
+}
+
+/// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
+#[inline(always)]
+pub(super) fn divide<R: Real, V: Lanes<R>>(block: &mut [R], ld: usize, rows: Rows) {
+    let Some(columns) = columns_of(block, ld) else { return super::portable::divide(block, ld, rows) };
+    let (mut tops, mut inverses) = ([[R::zero(); BLOCK]; BLOCK], [R::zero(); BLOCK]);
+    let mut below: [&mut [R]; BLOCK] = [&mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut []];
+    let parts = tops.iter_mut().zip(&mut inverses).zip(&mut below).zip(columns);
+    for (c, (((top, inverse), below), column)) in parts.enumerate() {
+        crate::workspace::copy(top, part(column, rows.from, BLOCK));
+        *inverse = R::one() / at(top, c);
+        *below = part_mut(column, rows.to, rows.count);
+    }
+    for row in (0..rows.count).step_by(V::WIDTH) {
+        store_rows(divided::<R, V>(rows_of(&below, row), &tops, &inverses), &mut below, row);
+    }
 }
 
 /// Factors of a block of columns in place, without exchanges; the inverse pivots. `None` if a multiplier exceeds 1 or a
