@@ -3,7 +3,7 @@
 //! Per link (x, y, θ) of the centre of mass. Hinge: r_c + R_c h_c = r_p + R_p h_p, θ_c = θ_p + u. Slider:
 //! r_c + R_c h_c = r_p + R_p (h_p + u a), θ_c = θ_p + angle. Every routine walks the links once: O(links).
 
-use crate::configuration::put_pose;
+use crate::configuration::{Poses, put_pose};
 use crate::model::{Control, Hold, LinkRecord, Model};
 use crate::scalar::{Complex, Real, cis, complex, perp};
 use crate::se2::{Pose, Twist};
@@ -14,30 +14,31 @@ pub(crate) fn place_links<R: Real>(model: &Model<'_, R>, s: &[R], q: &mut [R], p
     let walls = model.head.plan.walls;
     for (i, link) in model.links.iter().enumerate() {
         let c = link.coordinate;
-        let (parent_pose, parent_theta) = pose_of(q, link.parent);
-        let (origin, theta) = match link.hold {
-            Hold::Root => (complex(at(s, c), at(s, c + 1)), at(s, c + 2)),
+        let parent_pose = pose_of(model, poses, link.parent);
+        let parent_theta = at(q, 3 * link.parent + 2);
+        let (origin, turn, theta) = match link.hold {
+            Hold::Root => (complex(at(s, c), at(s, c + 1)), cis(at(s, c + 2)), at(s, c + 2)),
             Hold::Hinge { parent, own } => {
                 let theta = parent_theta + at(s, c);
-                (parent_pose.place(parent) - cis(theta) * own, theta)
+                let turn = cis(theta);
+                (parent_pose.place(parent) - turn * own, turn, theta)
             }
             Hold::Slider { parent, own, axis, angle } => {
                 let theta = parent_theta + angle;
-                (parent_pose.place(parent + axis * at(s, c)) - cis(theta) * own, theta)
+                let turn = cis(theta);
+                (parent_pose.place(parent + axis * at(s, c)) - turn * own, turn, theta)
             }
         };
         for (slot, value) in part_mut(q, 3 * i, 3).iter_mut().zip([origin.re, origin.im, theta]) {
             *slot = value;
         }
-        put_pose(poses, walls + i, &Pose { origin, turn: cis(theta) });
+        put_pose(poses, walls + i, &Pose { origin, turn });
     }
 }
 
-fn pose_of<R: Real>(q: &[R], link: usize) -> (Pose<R>, R) {
-    match part(q, 3 * link, 3) {
-        &[x, y, theta] => (Pose::new(x, y, theta), theta),
-        _ => (Pose::default(), R::zero()),
-    }
+/// Placement of a link, which stands behind those of the walls.
+fn pose_of<R: Real>(model: &Model<'_, R>, poses: &[R], link: usize) -> Pose<R> {
+    Poses(poses).get(model.head.plan.walls + link)
 }
 
 /// The twist of link `i` in a vector of three reals per link.
@@ -74,14 +75,14 @@ fn arms<R: Real>(
 }
 
 /// Velocities of the links for coordinate rates `ds`: out = ∂F/∂s · ds.
-pub(crate) fn velocities<R: Real>(model: &Model<'_, R>, s: &[R], ds: &[R], q: &[R], out: &mut [R]) {
+pub(crate) fn velocities<R: Real>(model: &Model<'_, R>, s: &[R], ds: &[R], poses: &[R], out: &mut [R]) {
     for (i, link) in model.links.iter().enumerate() {
         let c = link.coordinate;
         if let Hold::Root = link.hold {
             put_three(out, i, complex(at(ds, c), at(ds, c + 1)), at(ds, c + 2));
             continue;
         }
-        let ((pose, _), (own, _)) = (pose_of(q, link.parent), pose_of(q, i));
+        let (pose, own) = (pose_of(model, poses, link.parent), pose_of(model, poses, i));
         let (arm_p, arm_c, axis) = arms(link, s, &pose, &own);
         let parent = twist_of(out, link.parent);
         let rate = at(ds, c);
@@ -98,7 +99,7 @@ pub(crate) fn accelerations<R: Real>(
     s: &[R],
     ds: &[R],
     dds: &[R],
-    q: &[R],
+    poses: &[R],
     qd: &[R],
     out: &mut [R],
 ) {
@@ -108,7 +109,7 @@ pub(crate) fn accelerations<R: Real>(
             put_three(out, i, complex(at(dds, c), at(dds, c + 1)), at(dds, c + 2));
             continue;
         }
-        let ((pose, _), (own, _)) = (pose_of(q, link.parent), pose_of(q, i));
+        let (pose, own) = (pose_of(model, poses, link.parent), pose_of(model, poses, i));
         let (arm_p, arm_c, axis) = arms(link, s, &pose, &own);
         let (parent, w_p) = (twist_of(out, link.parent), twist_of(qd, link.parent).angular);
         let w_c = twist_of(qd, i).angular;
@@ -124,12 +125,12 @@ pub(crate) fn accelerations<R: Real>(
 
 /// Generalized force on every coordinate from forces on the links: out = (∂F/∂s)ᵀ f. Walks the tree from its
 /// leaves, carrying each link's force and moment to its parent. `f` is overwritten by the carried sums.
-pub(crate) fn project<R: Real>(model: &Model<'_, R>, s: &[R], q: &[R], f: &mut [R], out: &mut [R]) {
+pub(crate) fn project<R: Real>(model: &Model<'_, R>, s: &[R], poses: &[R], f: &mut [R], out: &mut [R]) {
     for (i, link) in model.links.iter().enumerate().rev() {
         let c = link.coordinate;
         let own_force = twist_of(f, i);
         let (force, moment) = (own_force.linear, own_force.angular);
-        let ((pose, _), (own, _)) = (pose_of(q, link.parent), pose_of(q, i));
+        let (pose, own) = (pose_of(model, poses, link.parent), pose_of(model, poses, i));
         let (arm_p, arm_c, axis) = arms(link, s, &pose, &own);
         // v_c = v_p + ω_p×arm_p + axis u̇ − ω_c×arm_c: the force acts at the anchor.
         let at_anchor = moment - crate::scalar::dot(perp(arm_c), force);
@@ -154,14 +155,14 @@ pub(crate) fn jacobian_column<R: Real>(
     model: &Model<'_, R>,
     coordinate: usize,
     s: &[R],
-    q: &[R],
+    poses: &[R],
     unit: &mut [R],
     out: &mut [R],
 ) {
     for (i, x) in unit.iter_mut().enumerate() {
         *x = if i == coordinate { R::one() } else { R::zero() };
     }
-    velocities(model, s, unit, q, out);
+    velocities(model, s, unit, poses, out);
 }
 
 /// Coordinates, rates and (for prescribed ones) accelerations at time `t`. `p`, `dp` hold the free ones.

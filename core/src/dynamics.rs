@@ -12,7 +12,7 @@ use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_form
 use crate::configuration::{Configuration, Poses};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::indicators::force_scale;
-use crate::model::{Control, Formulation, Model};
+use crate::model::{Control, CoordinateRecord, Formulation, Model};
 use crate::near::Near;
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
@@ -117,7 +117,7 @@ impl<R: Real> Work<'_, R> {
     }
 
     /// Every force that comes neither from inertia nor from drives, into `outer`.
-    fn outer_forces(&mut self, model: &Model<'_, R>) {
+    pub(crate) fn outer_forces(&mut self, model: &Model<'_, R>) {
         let c = &configuration!(self, model);
         self.outer.fill(R::zero());
         let head = model.head;
@@ -207,12 +207,12 @@ impl<R: Real> Work<'_, R> {
         for (dds, _) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
             *dds = R::zero();
         }
-        accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.drift);
+        accelerations(model, self.s, self.ds, self.dds, self.poses, self.qd, self.drift);
         self.outer_forces(model);
         self.fluid_force(model, Inertia::Drift);
         axpy(self.force, R::one(), self.outer);
         add_body_inertia(model, self.drift, self.force);
-        project(model, self.s, self.q, self.force, self.generalized);
+        project(model, self.s, self.poses, self.force, self.generalized);
         let rhs_at = n * n;
         for (c, g) in
             model.coordinates.iter().zip(self.generalized.iter()).filter(|(c, _)| c.control != Control::Prescribed)
@@ -224,7 +224,7 @@ impl<R: Real> Work<'_, R> {
         for (dds, c) in self.dds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
             *dds = at(self.reduced, rhs_at + c.free);
         }
-        accelerations(model, self.s, self.ds, self.dds, self.q, self.qd, self.qdd);
+        accelerations(model, self.s, self.ds, self.dds, self.poses, self.qd, self.qdd);
         self.check()
     }
 
@@ -238,7 +238,7 @@ impl<R: Real> Work<'_, R> {
         self.fluid_force(model, Inertia::Accelerations);
         axpy(self.force, R::one(), self.outer);
         add_body_inertia(model, self.qdd, self.force);
-        project(model, self.s, self.q, self.force, self.generalized);
+        project(model, self.s, self.poses, self.force, self.generalized);
     }
 
     /// Christoffel force of the velocities in `qd` into `force`.
@@ -251,22 +251,36 @@ impl<R: Real> Work<'_, R> {
 
     /// Power of all drives: Σ ν ṡ over prescribed and torque-driven coordinates.
     pub(crate) fn power(&mut self, model: &Model<'_, R>, t: R) -> R {
-        let given = model.coordinates.iter().any(|c| c.control == Control::Prescribed && !c.constant);
-        if given {
-            self.drive_forces(model);
-        }
+        let prescribed = |c: &CoordinateRecord<R>| c.control == Control::Prescribed;
         let mut power = R::zero();
-        for (i, c) in model.coordinates.iter().enumerate() {
+        for (i, (c, ds)) in model.coordinates.iter().zip(self.ds.iter()).enumerate() {
             power += match c.control {
                 Control::Free => R::zero(),
-                Control::Torque => {
-                    joint_torque(model, i, t, self.channels, at(self.s, i), at(self.ds, i)) * at(self.ds, i)
-                }
-                Control::Prescribed if given => at(self.generalized, i) * at(self.ds, i),
-                Control::Prescribed => R::zero(),
+                Control::Torque => joint_torque(model, i, t, self.channels, at(self.s, i), *ds) * *ds,
+                // What the prescribed coordinates bear where the free ones do not accelerate.
+                Control::Prescribed => at(self.generalized, i) * *ds,
             };
         }
+        if model.head.prescribed_moves {
+            // And what they bear of the free ones' accelerations, by the mass matrix of the columns.
+            let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
+            for (c, dds) in model.coordinates.iter().zip(self.dds.iter()).filter(|(c, _)| !prescribed(c)) {
+                power += *dds * self.coupling(model, c.free, n, rows);
+            }
+        }
         power
+    }
+
+    /// Entry of the mass matrix of two columns: of the fluid, symmetrized, and of the bodies.
+    fn coupling(&self, model: &Model<'_, R>, k: usize, j: usize, rows: usize) -> R {
+        let (column, other) = (part(self.jacobian, k * rows, rows), part(self.jacobian, j * rows, rows));
+        let momenta = (part(self.momenta, k * rows, rows), part(self.momenta, j * rows, rows));
+        let mut sum = (inner(column, momenta.1) + inner(other, momenta.0)) * R::HALF;
+        for (i, link) in model.links.iter().enumerate() {
+            let (a, b) = (twist_of(column, i), twist_of(other, i));
+            sum += link.mass * crate::scalar::dot(a.linear, b.linear) + link.inertia * a.angular * b.angular;
+        }
+        sum
     }
 
     /// Velocities of a lone swimmer's root from its impulse: N_pᵀ M (N_p ṗ + N_u u̇) = Π.
@@ -277,14 +291,7 @@ impl<R: Real> Work<'_, R> {
         for (k, value) in [px, py, l - (x * py - y * px)].into_iter().enumerate() {
             let mut sum = value;
             if model.head.prescribed_moves {
-                let (column, shape) = (part(self.jacobian, k * rows, rows), part(self.jacobian, n * rows, rows));
-                let (momentum, shape_momentum) =
-                    (part(self.momenta, k * rows, rows), part(self.momenta, n * rows, rows));
-                sum -= (inner(column, shape_momentum) + inner(shape, momentum)) * R::HALF;
-                for (i, link) in model.links.iter().enumerate() {
-                    let (a, b) = (twist_of(column, i), twist_of(shape, i));
-                    sum -= link.mass * crate::scalar::dot(a.linear, b.linear) + link.inertia * a.angular * b.angular;
-                }
+                sum -= self.coupling(model, k, n, rows);
             }
             put(self.reduced, n * n + k, sum);
         }
@@ -292,7 +299,7 @@ impl<R: Real> Work<'_, R> {
         for (ds, c) in self.ds.iter_mut().zip(model.coordinates).filter(|(_, c)| c.control != Control::Prescribed) {
             *ds = at(self.reduced, n * n + c.free);
         }
-        velocities(model, self.s, self.ds, self.q, self.qd);
+        velocities(model, self.s, self.ds, self.poses, self.qd);
     }
 }
 

@@ -1,11 +1,60 @@
 //! A lone rigid body: its added mass and the impulse of its circulation are constant in its own frame, so they are
 //! computed once and no boundary system is solved while stepping (Kirchhoff's equations).
 
+use crate::articulation::twist_of;
 use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
+use crate::configuration::put_pose;
+use crate::ldl;
 use crate::lu::{Factors, factor};
-use crate::scalar::{Complex, Real, cln, complex, dot};
+use crate::model::Model;
+use crate::scalar::{Complex, Real, cln, complex, dot, perp};
+use crate::se2::Pose;
 use crate::status::{Result, Status};
-use crate::workspace::{at, part_mut, put, take};
+use crate::work::{Counters, Work};
+use crate::workspace::{at, copy, part_mut, put, take};
+
+impl<R: Real> Work<'_, R> {
+    /// Accelerations of a lone body at (t, p, ṗ) by Kirchhoff's equations: with P and L the momentum of body and fluid in the
+    /// body's frame, Ṗ = −ω J P + f and L̇ = −v × P + τ. What [`Work::evaluate`] gives, which fills every buffer.
+    pub(crate) fn evaluate_lone(
+        &mut self,
+        model: &Model<'_, R>,
+        p: &[R],
+        dp: &[R],
+        counters: &mut Counters,
+    ) -> Result<()> {
+        counters.evaluations += 1;
+        for (to, from) in [(&mut *self.q, p), (&mut *self.s, p), (&mut *self.qd, dp), (&mut *self.ds, dp)] {
+            copy(to, from);
+        }
+        if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
+            return Err(Status::NonFiniteState.into());
+        }
+        let pose = Pose::new(at(p, 0), at(p, 1), at(p, 2));
+        put_pose(self.poses, 0, &pose);
+        let Some(link) = model.links.first() else { return Err(Status::Internal.into()) };
+        let density = model.head.fluid_density;
+        let [mut a, b, c, _, mut d, e, _, _, mut f] = model.head.lone_added_mass.map(|m| m * density);
+        (a, d, f) = (a + link.mass, d + link.mass, f + link.inertia);
+        let (v, spin) = (pose.unturned(complex(at(dp, 0), at(dp, 1))), at(dp, 2));
+        let momentum = complex(a * v.re + b * v.im + c * spin, b * v.re + d * v.im + e * spin);
+        let mut force = -perp(momentum) * spin;
+        let mut torque = v.im * momentum.re - v.re * momentum.im;
+        if model.head.plan.gravity || model.head.plan.circulation {
+            self.outer_forces(model);
+            let outer = twist_of(self.outer, 0);
+            (force, torque) = (force - pose.unturned(outer.linear), torque - outer.angular);
+        }
+        copy(self.reduced, &[a, b, c, b, d, e, c, e, f, force.re, force.im, torque]);
+        ldl::factor(part_mut(self.reduced, 0, 9), 3, self.reduced_pivots)?;
+        self.solve_reduced(3);
+        let rate = complex(at(self.reduced, 9), at(self.reduced, 10));
+        let linear = pose.turned(rate + perp(v) * spin);
+        copy(self.dds, &[linear.re, linear.im, at(self.reduced, 11)]);
+        copy(self.indicators, &[model.head.lone_resolution[0], R::zero()]);
+        if self.dds.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Status::NonFiniteState.into()) }
+    }
+}
 
 /// Reals of scratch for `n` nodes.
 pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {

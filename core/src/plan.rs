@@ -29,7 +29,7 @@ pub struct Plan {
     pub unknowns: usize,
     /// Unknowns on moving links.
     pub moving_unknowns: usize,
-    /// Right-hand sides solved (transposed ones included).
+    /// Right-hand sides solved at most (transposed ones included): products of solved columns take the place of some.
     pub right_hand_sides: usize,
     /// Coordinates that obey the laws of motion.
     pub free_coordinates: usize,

@@ -10,7 +10,7 @@ use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};
 use crate::work::{Counters, Dims, Work};
-use crate::workspace::{at, buffers, copy, part, put};
+use crate::workspace::{at, buffers, copy, part, part_mut, put};
 
 /// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
 pub const STEP_LIMIT: u64 = 1_000_000;
@@ -228,6 +228,14 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
     fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()> {
         let model = self.model;
         let (p, dp) = self.parts(y);
+        let n = model.head.plan.free_coordinates;
+        if model.head.plan.formulation == Formulation::Kirchhoff {
+            // Nothing to meet, no drive.
+            self.work.evaluate_lone(&model, p, dp, self.counters)?;
+            copy(part_mut(dydt, 0, n), self.work.ds);
+            copy(part_mut(dydt, n, n), self.work.dds);
+            return Ok(());
+        }
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         let zero = [R::zero(); 3];
         let dp = if locked { &zero } else { dp };
@@ -240,7 +248,6 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         if let Some((a, b)) = contact {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
-        let n = model.head.plan.free_coordinates;
         for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
             put(dydt, c.free, at(self.work.ds, i));
             if !locked {

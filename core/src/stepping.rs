@@ -222,7 +222,11 @@ impl<R: Real> Sim<'_, R> {
         if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
-        self.show()
+        if self.model.head.plan.formulation == Formulation::LockedMomentum {
+            return self.show();
+        }
+        self.show_placed();
+        Ok(())
     }
 
     /// Positions, velocities and joints of the state.
@@ -236,6 +240,13 @@ impl<R: Real> Sim<'_, R> {
             let (p, dp) = split_state(&model, self.state.y);
             self.work.place(&model, self.head.time, p, dp)?;
         }
+        self.show_placed();
+        Ok(())
+    }
+
+    /// The same, of what was placed last.
+    fn show_placed(&mut self) {
+        self.head.fresh = false;
         copy(self.state.positions, self.work.q);
         copy(self.state.velocities, self.work.qd);
         for (k, (u, du)) in self.work.s.iter().zip(self.work.ds.iter()).enumerate() {
@@ -245,7 +256,6 @@ impl<R: Real> Sim<'_, R> {
         if !self.head.started {
             set_anchor(self.state.anchor, self.work.poses, self.work.q);
         }
-        Ok(())
     }
 
     /// Makes the buffers hold an evaluation of the state shown, accelerations included.

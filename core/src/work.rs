@@ -195,7 +195,7 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn place(&mut self, model: &Model<'_, R>, t: R, p: &[R], dp: &[R]) -> Result<()> {
         set_coordinates(model, t, p, dp, self.channels, self.s, self.ds, self.dds);
         place_links(model, self.s, self.q, self.poses);
-        velocities(model, self.s, self.ds, self.q, self.qd);
+        velocities(model, self.s, self.ds, self.poses, self.qd);
         if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
             return Err(Status::NonFiniteState.into());
         }
@@ -229,14 +229,14 @@ impl<R: Real> Work<'_, R> {
         let rows = 3 * model.links.len();
         let unit = &mut *self.generalized;
         for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
-            jacobian_column(model, i, self.s, self.q, unit, part_mut(self.jacobian, c.free * rows, rows));
+            jacobian_column(model, i, self.s, self.poses, unit, part_mut(self.jacobian, c.free * rows, rows));
         }
         if model.head.prescribed_moves {
             for ((u, ds), c) in unit.iter_mut().zip(self.ds.iter()).zip(model.coordinates) {
                 *u = if c.control == Control::Prescribed { *ds } else { R::zero() };
             }
             let at = model.head.plan.free_coordinates * rows;
-            velocities(model, self.s, unit, self.q, part_mut(self.jacobian, at, rows));
+            velocities(model, self.s, unit, self.poses, part_mut(self.jacobian, at, rows));
         }
     }
 
