@@ -1725,7 +1725,7 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
     (48 * NEKTON_P_C(bodies, joints) + 11 * NEKTON_P_L(bodies, joints) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 40)
 #define NEKTON_P_EVALUATION(l, c, u, circulation, walls, channels) \
     (34 * (l) + 4 * NEKTON_P_S(walls) + 8 * NEKTON_P_S(channels) + 4 * (c) + 9 * (l) * ((c) + 1) + (c) * ((c) + 2) + \
-     ((u) + 8) * ((u) + (c) + 1) + 13 * (u) + 2 + NEKTON_P_S(circulation) * (u) * ((u) + 7))
+     ((u) + 15) * ((u) + (c) + 1) + 13 * (u) + 20 + NEKTON_P_S(circulation) * (u) * ((u) + 7))
 #define NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded) \
     (2 * NEKTON_P_KEPT(bodies, joints, walls, channels) + \
      NEKTON_P_EVALUATION(NEKTON_P_L(bodies, joints), NEKTON_P_C(bodies, joints), \

@@ -99,14 +99,16 @@ pub(crate) fn assemble<R: Real>(
             None => part(store, walls_at + source.first * walls, ready_len * source.nodes),
         };
         let (zx, zy) = (&*zx, &*zy);
-        let own = if source.link.is_none() && keep_walls { &[] } else { ready_at(source.self_at, c.model.head.walls_at) };
+        let own =
+            if source.link.is_none() && keep_walls { &[] } else { ready_at(source.self_at, c.model.head.walls_at) };
         let columns = part_mut(matrix, source.first * ld, source.nodes * ld);
         let parts = (ready, ready_len);
         machine.run(BlockColumns { nodes, factor: complex(factor, R::zero()), zx, zy, parts, own, columns, ld });
         if !regular.is_empty() {
             // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
             let own = ready_at(source.regular_at, c.model.head.walls_regular_at);
-            let (columns, factor) = (part_mut(regular, source.first * n, source.nodes * n), complex(R::zero(), -factor));
+            let (columns, factor) =
+                (part_mut(regular, source.first * n, source.nodes * n), complex(R::zero(), -factor));
             machine.run(BlockColumns { nodes, factor, zx, zy, parts, own, columns, ld: n });
         }
         if !source.table(store).is_empty() {

@@ -133,9 +133,10 @@ impl<R: Real> Task for Momenta<'_, '_, R> {
         for ((column, v), momentum) in all.zip(self.momenta.chunks_exact_mut(self.rows.max(1))) {
             let u = part(column, 0, n.x.len());
             let v = twist_of(v, self.link);
-            let moments = b.iter().zip(inside).map(|(b, [x, y, chi])| {
-                inner(b, u) + (x * v.linear.re + y * v.linear.im + chi * v.angular)
-            });
+            let moments = b
+                .iter()
+                .zip(inside)
+                .map(|(b, [x, y, chi])| inner(b, u) + (x * v.linear.re + y * v.linear.im + chi * v.angular));
             for (p, moment) in part_mut(momentum, 3 * self.link, 3).iter_mut().zip(moments) {
                 *p = moment;
             }

@@ -46,13 +46,8 @@ fn an_evaluation_between_walls_depends_on_its_state_alone() {
     let bodies = [body(&links, [0.0, 0.0, 0.1], [0.3, 0.1, 0.2])];
     let tank = wall(disc(5.0), [0.0; 2], 0.0, 40);
     for quadrature in [Quadrature::Plain, Quadrature::Graded] {
-        let scene = Scene {
-            bodies: &bodies,
-            obstacles: &obstacles,
-            tank: Some(tank),
-            quadrature,
-            ..Scene::new(1.0, 0.0)
-        };
+        let scene =
+            Scene { bodies: &bodies, obstacles: &obstacles, tank: Some(tank), quadrature, ..Scene::new(1.0, 0.0) };
         let mut sim = simulation(&scene, Method::Rk4 { step: 1e-3 });
         let start = sim.view().state().to_vec();
         // From far to close, where the walls' nodes follow, and back.
