@@ -3,19 +3,20 @@
 
 use crate::articulation::twist_of;
 use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
-use crate::configuration::put_pose;
+use crate::configuration::{Configuration, Poses, put_pose};
 use crate::ldl;
 use crate::lu::{Factors, factor};
 use crate::model::Model;
-use crate::scalar::{Complex, Real, cln, complex, dot, perp};
+use crate::near::Near;
+use crate::scalar::{Complex, Real, cln, complex, dot};
 use crate::se2::Pose;
 use crate::status::{Result, Status};
-use crate::work::{Counters, Work};
-use crate::workspace::{at, copy, part_mut, put, take};
+use crate::work::{Counters, Work, configuration, lone_momentum};
+use crate::workspace::{add, at, copy, part, part_mut, put, take};
 
 impl<R: Real> Work<'_, R> {
-    /// Accelerations of a lone body at (t, p, ṗ) by Kirchhoff's equations: with P and L the momentum of body and fluid in the
-    /// body's frame, Ṗ = −ω J P + f and L̇ = −v × P + τ. What [`Work::evaluate`] gives, which fills every buffer.
+    /// Accelerations of a lone body by Kirchhoff's equations, M (q̈ − J q̇) + J p + f = 0 with p = M q̇: what
+    /// [`Work::evaluate`] gives, which fills every buffer.
     pub(crate) fn evaluate_lone(
         &mut self,
         model: &Model<'_, R>,
@@ -33,24 +34,32 @@ impl<R: Real> Work<'_, R> {
         let pose = Pose::new(at(p, 0), at(p, 1), at(p, 2));
         put_pose(self.poses, 0, &pose);
         let Some(link) = model.links.first() else { return Err(Status::Internal.into()) };
-        let density = model.head.fluid_density;
-        let [mut a, b, c, _, mut d, e, _, _, mut f] = model.head.lone_added_mass.map(|m| m * density);
-        (a, d, f) = (a + link.mass, d + link.mass, f + link.inertia);
-        let (v, spin) = (pose.unturned(complex(at(dp, 0), at(dp, 1))), at(dp, 2));
-        let momentum = complex(a * v.re + b * v.im + c * spin, b * v.re + d * v.im + e * spin);
-        let mut force = -perp(momentum) * spin;
-        let mut torque = v.im * momentum.re - v.re * momentum.im;
+        let v = twist_of(dp, 0);
+        let (one, zero) = (R::one(), R::zero());
+        let c = configuration!(self, model);
+        let momentum = |v: [R; 3]| {
+            let mut momentum = [zero; 3];
+            lone_momentum(&c, &v, &mut momentum);
+            momentum
+        };
+        let columns = [[one, zero, zero], [zero, one, zero], [zero, zero, one]].map(momentum);
+        let [px, py, _] = momentum([v.linear.re, v.linear.im, v.angular]);
+        let [fx, fy, torque] = momentum([v.linear.im * v.angular, -v.linear.re * v.angular, zero]);
+        let mut force = [fx - py * v.angular, fy + px * v.angular, torque + v.linear.re * py - v.linear.im * px];
         if model.head.plan.gravity || model.head.plan.circulation {
             self.outer_forces(model);
-            let outer = twist_of(self.outer, 0);
-            (force, torque) = (force - pose.unturned(outer.linear), torque - outer.angular);
+            for (f, outer) in force.iter_mut().zip(self.outer.iter()) {
+                *f += *outer;
+            }
         }
-        copy(self.reduced, &[a, b, c, b, d, e, c, e, f, force.re, force.im, torque]);
+        for (k, (column, m)) in columns.iter().zip([link.mass, link.mass, link.inertia]).enumerate() {
+            copy(part_mut(self.reduced, 3 * k, 3), column);
+            add(self.reduced, 4 * k, m);
+            put(self.reduced, 9 + k, -at(&force, k));
+        }
         ldl::factor(part_mut(self.reduced, 0, 9), 3, self.reduced_pivots)?;
         self.solve_reduced(3);
-        let rate = complex(at(self.reduced, 9), at(self.reduced, 10));
-        let linear = pose.turned(rate + perp(v) * spin);
-        copy(self.dds, &[linear.re, linear.im, at(self.reduced, 11)]);
+        copy(self.dds, part(self.reduced, 9, 3));
         copy(self.indicators, &[model.head.lone_resolution[0], R::zero()]);
         if self.dds.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Status::NonFiniteState.into()) }
     }
