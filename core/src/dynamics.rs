@@ -8,7 +8,7 @@
 //! energy balance is exact at any resolution.
 
 use crate::articulation::{accelerations, project, put_three, twist_of, velocities};
-use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, pair_pass, without_turning};
+use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, without_turning};
 use crate::configuration::{Configuration, Poses};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::indicators::force_scale;
@@ -30,7 +30,7 @@ impl<R: Real> Work<'_, R> {
         if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
             let c = &configuration!(self, model);
             let out = PassResult { rate: self.rate, transposed: self.transposed, gradient: self.gradient };
-            pair_pass(c, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
+            R::pair_pass(c, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
             for g in self.gradient.iter_mut() {
                 *g *= model.head.fluid_density;
             }

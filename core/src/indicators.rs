@@ -5,7 +5,7 @@
 //! boundary system reproduces the one solution that is known exactly, the constant density: A 1 = 2 on bodies and
 //! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve.
 
-use crate::christoffel::{PairScratch, PassResult, pair_pass};
+use crate::christoffel::{PairScratch, PassResult};
 use crate::configuration::{Configuration, Poses};
 use crate::dynamics::largest_force;
 use crate::lu::Factors;
@@ -139,7 +139,7 @@ impl<R: Real> Sim<'_, R> {
         let scale = force_scale(&model, w.force, w.momentum, w.qd);
         let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
         let c = &configuration!(w, &model);
-        pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
+        R::pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
         let system = system!(w);
         system.factors().solve(w.rate);
         system.factors().solve_transposed(w.transposed);

@@ -47,6 +47,7 @@ pub mod boundary;
 mod build;
 pub(crate) mod christoffel;
 pub mod compile;
+mod compiled;
 pub(crate) mod configuration;
 pub(crate) mod contact;
 pub mod curve;

@@ -21,6 +21,7 @@ pub trait Real:
     sealed::Sealed
     + crate::lu::Vectors
     + crate::elementary::Bits
+    + crate::compiled::Compiled
     + Copy
     + Default
     + PartialOrd

@@ -39,7 +39,15 @@ impl<R: Real> Sim<'_, R> {
             Stage::Grade => work.grade(&model),
             Stage::Assemble => {
                 let (model, system) = (&model, system!(work));
-                assemble(&configuration!(work, model), false, system.matrix, system.ld, system.regular, work.zx, work.zy);
+                assemble(
+                    &configuration!(work, model),
+                    false,
+                    system.matrix,
+                    system.ld,
+                    system.regular,
+                    work.zx,
+                    work.zy,
+                );
                 Ok(())
             }
             Stage::Solve => work.solve_fluid(&model, &mut crate::Counters::default()),

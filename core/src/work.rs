@@ -214,7 +214,7 @@ impl<R: Real> Work<'_, R> {
             preimages: self.near_preimages,
             unknowns: self.pivots.len(),
         };
-        near.prepare(model, Poses(self.poses))
+        R::prepare(&mut near, model, Poses(self.poses))
     }
 
     /// Writes the walls' poses, once.
@@ -266,8 +266,8 @@ impl<R: Real> Work<'_, R> {
             put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
         }
         let mut system = system!(self);
-        system.solve(c, self.moving, self.zx, self.zy)?;
-        system.momenta(c, self.moving, [self.hx, self.hy, self.fx], self.momenta);
+        R::solve_system(&mut system, c, self.moving, [self.zx, self.zy])?;
+        R::momenta(&system, c, self.moving, [self.hx, self.hy, self.fx], self.momenta);
         for p in self.momenta.chunks_exact_mut(rows.max(1)) {
             to_world(c, density, p);
         }

@@ -75,6 +75,10 @@ impl<R: Real> Grading<'_, R> {
     /// # Errors
     /// `Internal` if a node could not be placed to rounding.
     pub(crate) fn walk(&self, n: usize, mut visit: impl FnMut([R; 3])) -> Result<()> {
+        R::walk(self, n, &mut visit)
+    }
+
+    pub(crate) fn walk_here(&self, n: usize, visit: &mut dyn FnMut([R; 3])) -> Result<()> {
         let step = R::TAU / R::count(n.max(1));
         let mut last = [R::zero(), R::zero()];
         for first in (0..n).step_by(LANES) {

@@ -81,7 +81,7 @@ impl<R: Real> NearMut<'_, R> {
     ///
     /// # Errors
     /// `Internal` if a node could not be placed to rounding.
-    pub(crate) fn prepare(&mut self, model: &Model<'_, R>, poses: Poses<'_, R>) -> Result<()> {
+    pub(crate) fn prepare_here(&mut self, model: &Model<'_, R>, poses: Poses<'_, R>) -> Result<()> {
         if !HERE || self.ladders.is_empty() {
             return Ok(());
         }

@@ -112,7 +112,11 @@ impl<R: Real, const L: usize> Completed<R, L> {
 
 impl<R: Real> Source<'_, R> {
     /// Calls `visit` with (row, preimage) for every preimage of the targets that needs a pole term, at most two to a row.
-    pub(crate) fn each_preimage(&self, targets: &Targets<'_, R>, visit: impl FnMut(usize, Preimage<R>)) {
+    pub(crate) fn each_preimage(&self, targets: &Targets<'_, R>, mut visit: impl FnMut(usize, Preimage<R>)) {
+        R::each_preimage(self, targets, &mut visit);
+    }
+
+    pub(crate) fn each_preimage_here(&self, targets: &Targets<'_, R>, visit: impl FnMut(usize, Preimage<R>)) {
         if let Curve::Ellipse(e) = &self.view.curve {
             return self.on_ellipse(*e, targets, visit);
         }
