@@ -145,6 +145,7 @@ impl<R: Real> Work<'_, R> {
         }
         let (system, mut flow, mut scratch) = (system!(self), flow!(self), scratch!(self));
         circulation::solve(c, &system, &mut flow);
+        put(self.indicators, 3, circulation::data_error(c, &flow));
         circulation::add_energy_gradient(c, &system, &mut flow, &mut scratch, density, self.outer);
         if head.gyroscopic {
             circulation::add_gyroscopic_force(

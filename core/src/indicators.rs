@@ -26,7 +26,8 @@ pub struct Resolution<R> {
     /// Difference of the two halves of the force, relative to the largest force (torques over the reach of their links), or
     /// to the kinetic energy of the fluid over the largest reach if that is more. 0 with the boundary formula.
     pub force: R,
-    /// Error of the constant density on the links as a solution of the boundary system.
+    /// Error of the constant density on the links (by the plain rule also on walls) as a solution of the boundary system; with circulation also the error of the
+    /// fluxes of the bodies' isolated flows through every boundary, relative to the circulations, if that is more.
     pub quadrature: R,
     /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
     /// repulsion.
@@ -49,7 +50,7 @@ impl<R: Real> Resolution<R> {
     }
 }
 
-/// Largest error of the constant density on links, given the factors of the boundary system. `density` is scratch.
+/// Largest error of the constant density on links (by the plain rule also on walls), given the factors of the boundary system. `density` is scratch.
 pub(crate) fn constant_error<R: Real>(model: &Model<'_, R>, factors: &Factors<'_, R>, density: &mut [R]) -> R {
     let tank = model.boundaries.iter().any(|b| b.sign > R::zero());
     for b in model.boundaries {
@@ -63,8 +64,8 @@ pub(crate) fn constant_error<R: Real>(model: &Model<'_, R>, factors: &Factors<'_
         part_mut(density, b.first, b.nodes).fill(sum);
     }
     factors.solve(density);
-    // Between walls an error may be large that no body feels.
-    let links = model.boundaries.iter().filter(|b| b.link.is_some());
+    // Between walls an error may be large that no body feels; but by the plain rule a wall may be too thin for its own nodes.
+    let links = model.boundaries.iter().filter(|b| b.link.is_some() || b.table_len == 0);
     let values = links.flat_map(|b| part(density, b.first, b.nodes));
     values.fold(R::zero(), |m, x| m.max((*x - R::one()).abs()))
 }
@@ -83,8 +84,8 @@ impl<R: Real> Work<'_, R> {
         } else {
             constant_error(model, &system!(self).factors(), self.solution)
         };
-        let [mass, force, repulsion] = [0, 1, 2].map(|k| at(self.indicators, k));
-        Resolution { mass, force, quadrature, repulsion }
+        let [mass, force, repulsion, circulation] = [0, 1, 2, 3].map(|k| at(self.indicators, k));
+        Resolution { mass, force, quadrature: quadrature.max(circulation), repulsion }
     }
 }
 

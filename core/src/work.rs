@@ -89,7 +89,7 @@ buffers! {
         force: 3 * d.links,
         outer: 3 * d.links,
         spare: 3 * d.links,
-        indicators: 3,
+        indicators: 4,
         /// Where in its memory the matrix begins.
         matrix_at: 1,
         walls_ready: 1,

@@ -40,8 +40,8 @@ pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) 
 /// How much a boundary needs ladders of which the finest has the scale `beta`: 1 where its own nodes do not resolve that, 0 where
 /// they do to rounding (an error like e^(−N β)), continuous in between.
 fn need<R: Real>(b: &BoundaryRecord<R>, plain: R, beta: R) -> R {
-    let resolved = R::count(b.nodes) * plain * beta / -R::EPSILON.ln();
-    ((R::one() - resolved) * R::lit(6.0)).max(R::zero()).min(R::one())
+    let resolved = R::count(b.nodes) * plain * beta / (-R::EPSILON.ln() * R::lit(1.25));
+    ((R::one() - resolved) * R::lit(5.0)).max(R::zero()).min(R::one())
 }
 
 /// The interior potential of rotation at the nodes.
