@@ -264,15 +264,15 @@ impl<R: Real> Task for BothVelocities<'_, '_, R> {
             let weight = dg * self.factor;
             let c = weight * *w;
             let mut sums = [[R::zero(); LANES]; 2];
-            let (mut hx, mut hy) = (t.hx.chunks_exact_mut(LANES), t.hy.chunks_exact_mut(LANES));
-            let (zx, zy) = (t.zx.chunks_exact(LANES), t.zy.chunks_exact(LANES));
-            let (fx, fy) = (t.fx.chunks_exact(LANES), t.fy.chunks_exact(LANES));
-            let rest = [zx.remainder(), zy.remainder(), fx.remainder(), fy.remainder()];
-            for ((hx, hy), ((x, y), (fx, fy))) in hx.by_ref().zip(hy.by_ref()).zip(zx.zip(zy).zip(fx.zip(fy))) {
-                sums = both_lanes(g, c, [x, y, fx, fy], [hx, hy], sums);
+            let ((hx8, hx), (hy8, hy)) = (t.hx.as_chunks_mut::<LANES>(), t.hy.as_chunks_mut::<LANES>());
+            let ((x8, x), (y8, y)) = (t.zx.as_chunks::<LANES>(), t.zy.as_chunks::<LANES>());
+            let ((fx8, fx), (fy8, fy)) = (t.fx.as_chunks::<LANES>(), t.fy.as_chunks::<LANES>());
+            let targets = x8.iter().zip(y8).zip(fx8.iter().zip(fy8));
+            for ((hx, hy), ((x, y), (fx, fy))) in hx8.iter_mut().zip(hy8).zip(targets) {
+                sums = both_lanes(g, c, [x, y, fx, fy].map(|x| x.as_slice()), [hx, hy], sums);
             }
-            if !rest[0].is_empty() {
-                sums = both_lanes(g, c, rest, [hx.into_remainder(), hy.into_remainder()], sums);
+            if !x.is_empty() {
+                sums = both_lanes(g, c, [x, y, fx, fy], [hx, hy], sums);
             }
             let [re, mut im] = sums;
             for (im, re) in im.iter_mut().zip(re) {

@@ -129,15 +129,15 @@ impl<R: Real> Task for Momenta<'_, '_, R> {
         let b = [&*self.bx, &*self.by, &*self.bt];
         // BᵀX, for the potential inside.
         let inside = b.map(|b| [n.x, n.y, n.chi].map(|x| inner(b, x)));
-        let all = self.columns.chunks(self.ld.max(1)).zip(self.motions.chunks_exact(self.rows.max(1)));
-        for ((column, v), momentum) in all.zip(self.momenta.chunks_exact_mut(self.rows.max(1))) {
-            let u = part(column, 0, n.x.len());
+        for (k, v) in self.motions.chunks_exact(self.rows.max(1)).enumerate() {
+            let u = part(self.columns, k * self.ld, n.x.len());
             let v = twist_of(v, self.link);
             let moments = b
                 .iter()
                 .zip(inside)
                 .map(|(b, [x, y, chi])| inner(b, u) + (x * v.linear.re + y * v.linear.im + chi * v.angular));
-            for (p, moment) in part_mut(momentum, 3 * self.link, 3).iter_mut().zip(moments) {
+            let momentum = part_mut(self.momenta, k * self.rows + 3 * self.link, 3);
+            for (p, moment) in momentum.iter_mut().zip(moments) {
                 *p = moment;
             }
         }

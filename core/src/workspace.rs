@@ -59,10 +59,11 @@ pub(crate) fn copy<T: Copy>(to: &mut [T], from: &[T]) {
 #[inline]
 pub(crate) fn inner<R: Real>(a: &[R], b: &[R]) -> R {
     let mut lanes = [R::zero(); 8];
-    let (a8, b8) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest = a8.remainder().iter().zip(part(b, a.len() - a8.remainder().len(), a8.remainder().len()));
+    // Arrays: the length of a chunk that the compiler does not know might be 0, and be divided by.
+    let ((a8, a_rest), b8) = (a.as_chunks::<8>(), b.as_chunks::<8>().0);
+    let rest = a_rest.iter().zip(part(b, a.len() - a_rest.len(), a_rest.len()));
     let tail = rest.fold(R::zero(), |s, (x, y)| s + *x * *y);
-    for (a, b) in a8.zip(b8) {
+    for (a, b) in a8.iter().zip(b8) {
         for ((s, x), y) in lanes.iter_mut().zip(a).zip(b) {
             *s += *x * *y;
         }

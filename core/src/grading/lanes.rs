@@ -91,7 +91,8 @@ impl<R: Real> Grading<'_, R> {
             }
             for i in 0..LANES.min(n - first) {
                 if !chunk.settled {
-                    chunk.t[i] = self.inverse(s[i], chunk.t[i])?;
+                    let guess = if chunk.t[i].is_finite() { chunk.t[i] } else { s[i] };
+                    chunk.t[i] = self.inverse(s[i], guess)?;
                     [_, chunk.slope[i], chunk.bend[i]] = self.jet(chunk.t[i]);
                 }
                 visit([chunk.t[i], chunk.slope[i], chunk.bend[i]]);

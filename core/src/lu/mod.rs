@@ -104,7 +104,7 @@ fn factor_by<R: Real, K: Kernel<R>>(
     reduce(kernel, left, ld, n, 0, right);
     let (mut smallest, mut largest) = eliminate(kernel, right, ld, n, done, second).ok_or(Status::Singular)?;
     exchange_all(left, ld, done, second);
-    for pivot in left.iter().step_by(ld + 1) {
+    for pivot in left.iter().step_by(ld.saturating_add(1)) {
         (smallest, largest) = (smallest.min(pivot.abs()), largest.max(pivot.abs()));
     }
     let straight = exchange_all(columns, ld, 0, pivots);

@@ -70,7 +70,7 @@ fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: 
         let (group, others) = rest.split_at_mut_checked(COLUMNS * ld).unwrap_or((&mut [], &mut []));
         if depth >= FAR {
             // What the next tile changes is on its way while this one is computed.
-            for column in others.chunks(ld).take(COLUMNS) {
+            for column in others.chunks(ld.max(1)).take(COLUMNS) {
                 for i in 0..=M {
                     V::prefetch(part(column, rows.to + i * V::WIDTH, 1));
                 }

@@ -53,7 +53,10 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
         for first in (0..n).step_by(LANES) {
             let z = self.points(first);
             let (roots, angles) = self.roots(first, &z);
-            for i in 0..LANES.min(n - first) {
+            for i in 0..LANES {
+                if first + i >= n {
+                    break;
+                }
                 for (w, angle) in roots.iter().zip(&angles) {
                     let w = complex(w[0][i], w[1][i]);
                     let size = w.re * w.re + w.im * w.im;
@@ -79,10 +82,11 @@ impl<R: Real> Pending<R> {
     /// The first one fills all lanes, so that none holds garbage.
     #[inline(always)]
     fn push(&mut self, row: usize, node: usize, z: Complex<R>, w: Complex<R>) {
-        let lanes = if self.count == 0 { 0..LANES } else { self.count..(self.count + 1).min(LANES) };
-        for i in lanes {
-            (self.row[i], self.node[i]) = (row, node);
-            (self.z[0][i], self.z[1][i], self.w[0][i], self.w[1][i]) = (z.re, z.im, w.re, w.im);
+        for i in 0..LANES {
+            if i == self.count || self.count == 0 {
+                (self.row[i], self.node[i]) = (row, node);
+                (self.z[0][i], self.z[1][i], self.w[0][i], self.w[1][i]) = (z.re, z.im, w.re, w.im);
+            }
         }
         self.count += 1;
     }
@@ -195,9 +199,9 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
             (roots.tangent[0][i], roots.tangent[1][i]) = (-tangent[1], tangent[0]);
         }
         let done = self.source.complete(&roots);
-        for i in 0..pending.count {
+        for (i, row) in pending.row.iter().enumerate().take(pending.count) {
             if let Some(p) = done.get(i, nodes.t.len()) {
-                (self.visit)(pending.row[i], p);
+                (self.visit)(*row, p);
             }
         }
     }
