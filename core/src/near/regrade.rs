@@ -17,7 +17,9 @@ use crate::workspace::{part_mut, put};
 pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) -> Result<()> {
     for (i, b) in model.boundaries.iter().enumerate() {
         let Some(finest) = listed(near.ladders, i).next() else { continue };
-        let need = need(b, b.view(model.store).grading.plain(), finest.beta);
+        // Repulsion is steeper than what the flow needs resolved.
+        let flow = need(b, b.view(model.store).grading.plain(), finest.beta);
+        let need = if model.head.repulsion.is_some() { R::one() } else { flow };
         if need <= R::zero() {
             continue;
         }
