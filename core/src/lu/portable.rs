@@ -18,35 +18,28 @@ pub(crate) struct Portable;
 
 impl<R: Real> Kernel<R> for Portable {
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
-        by_strips(left, ld, Kind::Product(rows), right);
+        by_strips(left, ld, rows, Kind::Product, right);
     }
 
     fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)> {
         let (mut smallest, mut largest) = (R::MAX, R::zero());
         for (c, pivot) in pivots.iter_mut().enumerate() {
             let (done, rest) = block.split_at_mut_checked(c * ld)?;
-            let first = c - c % strip::<R>();
+            let first = c - c % columns::<R>();
             if c == first {
                 // The columns done before act upon a whole strip at once, those of the strip itself one by one.
-                let strip = part_mut(rest, 0, (strip::<R>() * ld).min(rest.len()));
+                let strip = part_mut(rest, 0, (columns::<R>() * ld).min(rest.len()));
                 self.solve_lower(done, ld, k, strip);
                 self.subtract(done, ld, Rows { to: k + c, count: n - k - c, from: k }, strip);
             }
-            let column = part_mut(rest, 0, n);
+            let below = part_mut(rest, 0, n);
             for (p, left) in done.chunks_exact(ld.max(1)).enumerate().skip(first) {
-                let x = at(column, k + p);
-                let below = part(left, k + p + 1, n - k - p - 1);
-                for (y, l) in part_mut(column, k + p + 1, n - k - p - 1).iter_mut().zip(below) {
-                    *y -= x * *l;
-                }
+                let x = at(below, k + p);
+                subtract_column(part_mut(below, k + p + 1, n - k - p - 1), x, part(left, k + p + 1, n - k - p - 1));
             }
-            let (mut row, mut size) = (k + c, R::zero());
-            for (i, x) in part(column, k + c, n - k - c).iter().enumerate() {
-                let m = x.abs();
-                if m > size {
-                    (row, size) = (k + c + i, m);
-                }
-            }
+            let below = part(below, k + c, n - k - c);
+            let size = largest_of(below);
+            let row = k + c + below.iter().position(|x| x.abs() == size).unwrap_or(0);
             if size == R::zero() || !size.is_finite() {
                 return None;
             }
@@ -59,19 +52,17 @@ impl<R: Real> Kernel<R> for Portable {
             }
             let column = part_mut(block, c * ld, n);
             let inverse = R::one() / at(column, k + c);
-            for x in part_mut(column, k + c + 1, n - k - c - 1) {
-                *x *= inverse;
-            }
+            scale_column(part_mut(column, k + c + 1, n - k - c - 1), inverse);
         }
         Some((smallest, largest))
     }
 
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        by_strips(left, ld, Kind::Lower(k), right);
+        by_strips(left, ld, triangle(left, ld, k), Kind::Lower, right);
     }
 
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
-        by_strips(left, ld, Kind::Upper(k), right);
+        by_strips(left, ld, triangle(left, ld, k), Kind::Upper, right);
     }
 
     fn block(self) -> usize {
@@ -92,94 +83,98 @@ impl<R: Real> Kernel<R> for Portable {
     }
 }
 
-/// What happens to a strip of columns.
-#[derive(Clone, Copy)]
+/// What happens to rows of columns.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     /// C ← C − A B.
-    Product(Rows),
-    /// Solution with the unit lower triangle in the rows from this one on.
-    Lower(usize),
-    /// The same with the upper triangle.
-    Upper(usize),
+    Product,
+    /// Solution with a unit lower triangle: the product with what is above, then the triangle of a tile's own rows.
+    Lower,
+    /// The same with an upper triangle and what is below.
+    Upper,
 }
 
-/// Columns of a strip, and of a tile: what the registers of a microcontroller hold, and those of larger machines.
-const fn strip<R>() -> usize {
+/// The rows of a triangle that begins in row `k`.
+fn triangle<R>(left: &[R], ld: usize, k: usize) -> Rows {
+    Rows { to: k, count: left.len().checked_div(ld).unwrap_or(0), from: k }
+}
+
+/// Columns of a tile: what the registers of a microcontroller hold, or those of larger machines.
+const fn columns<R>() -> usize {
     if cfg!(target_arch = "arm") && size_of::<R>() == 8 { 2 } else { 4 }
 }
 
-fn by_strips<R: Real>(left: &[R], ld: usize, kind: Kind, right: &mut [R]) {
-    let (width, mut rest) = (strip::<R>() * ld, right);
+fn by_strips<R: Real>(left: &[R], ld: usize, rows: Rows, kind: Kind, right: &mut [R]) {
+    let (width, mut rest) = (columns::<R>() * ld, right);
     while rest.len() >= width.max(1) {
         let (strip, others) = rest.split_at_mut_checked(width).unwrap_or((&mut [], &mut []));
-        if self::strip::<R>() == 2 {
-            one_strip::<R, 2>(left, ld, kind, strip);
+        if columns::<R>() == 2 {
+            one_strip::<R, 2>(left, ld, rows, kind, strip);
         } else {
-            one_strip::<R, 4>(left, ld, kind, strip);
+            one_strip::<R, 4>(left, ld, rows, kind, strip);
         }
         rest = others;
     }
     for column in rest.chunks_mut(ld.max(1)) {
-        one_strip::<R, 1>(left, ld, kind, column);
+        one_strip::<R, 1>(left, ld, rows, kind, column);
     }
 }
 
-/// Tile by tile, in an order in which each finds what it needs.
-fn one_strip<R: Real, const N: usize>(left: &[R], ld: usize, kind: Kind, strip: &mut [R]) {
+/// `N` columns, tile by tile, in an order in which each finds what it needs; rows that make no tile one by one.
+fn one_strip<R: Real, const N: usize>(left: &[R], ld: usize, rows: Rows, kind: Kind, strip: &mut [R]) {
     let width = left.len().checked_div(ld).unwrap_or(0);
-    let count = if let Kind::Product(rows) = kind { rows.count } else { width };
-    let tiles = count.div_ceil(ROWS);
-    for i in 0..tiles {
-        let row = ROWS * if let Kind::Upper(_) = kind { tiles - 1 - i } else { i };
-        let count = (count - row).min(ROWS);
-        let (first, depth, to, from) = match kind {
-            Kind::Product(rows) => (0, width, rows.to + row, rows.from),
-            Kind::Lower(k) => (0, row, k + row, k),
-            Kind::Upper(k) => (row + count, width - row - count, k + row, k + row + count),
-        };
-        if count == ROWS {
-            let (a, triangle) = (part(left, first * ld, depth * ld), part(left, row * ld, ROWS * ld));
-            let _ = tile::<R, N>(a, ld, Rows { to, count: depth, from }, kind, triangle, strip);
-        } else {
-            for i in 0..count {
-                let (first, depth, to, from) = match kind {
-                    Kind::Product(_) => (first, depth, to + i, from),
-                    Kind::Lower(_) => (first, depth + i, to + i, from),
-                    Kind::Upper(_) => (first - i, depth + i, to + count - 1 - i, from - i),
-                };
-                for j in 0..N {
-                    let (a, b) = (part(left, first * ld, depth * ld), part(strip, j * ld + from, depth));
-                    let mut sum = at(strip, j * ld + to);
-                    for (a, b) in a.chunks_exact(ld.max(1)).zip(b) {
-                        sum -= at(a, to) * *b;
-                    }
-                    if let Kind::Upper(_) = kind {
-                        sum /= at(left, (first - 1) * ld + to);
-                    }
-                    put(strip, j * ld + to, sum);
-                }
+    let mut done = 0;
+    while done < rows.count {
+        let rest = rows.count - done;
+        let whole = rest >= ROWS && (kind != Kind::Upper || rest.is_multiple_of(ROWS));
+        let count = if whole { ROWS } else { 1 };
+        let (left, row, from, depth) = match kind {
+            Kind::Product => (left, done, rows.from, width),
+            Kind::Lower => (left, done, rows.from, done),
+            Kind::Upper => {
+                (left.get((rest - count) * ld..).unwrap_or(&[]), rest - count, rows.from + rest, done)
             }
+        };
+        if !whole {
+            single_row(left, ld, rows.to + row, from, depth, kind, strip);
+        } else if tile::<R, N>(left, ld, rows.to + row, from, depth, kind, strip).is_none() {
+            put(strip, rows.to + row, R::NAN);
         }
+        done += count;
     }
 }
 
-/// One tile of four rows, held in registers: what is in an array that a loop runs over would not stay there. `None` when a part
-/// of it is not there.
+/// The row `to` minus the product of `depth` columns of A and the rows `from ..`. On the left of those columns is the triangle if it
+/// is an upper one, on their right if it is a lower one.
 #[inline(never)]
+fn single_row<R: Real>(left: &[R], ld: usize, to: usize, from: usize, depth: usize, kind: Kind, strip: &mut [R]) {
+    let own = if kind == Kind::Upper { ld } else { 0 };
+    for column in strip.chunks_mut(ld.max(1)) {
+        let mut sum = at(column, to);
+        for (a, b) in left.get(own..).unwrap_or(&[]).chunks(ld.max(1)).zip(part(column, from, depth)) {
+            sum -= at(a, to) * *b;
+        }
+        put(column, to, if kind == Kind::Upper { sum / at(left, to) } else { sum });
+    }
+}
+
+/// The same for four rows, held in registers: what is in an array that a loop runs over would not stay there. `None` when
+/// something is not there.
+#[inline(always)]
 fn tile<R: Real, const N: usize>(
     left: &[R],
     ld: usize,
-    rows: Rows,
+    to: usize,
+    from: usize,
+    depth: usize,
     kind: Kind,
-    triangle: &[R],
     strip: &mut [R],
 ) -> Option<()> {
-    let Rows { to, from, count: depth } = rows;
     let column = |j: usize| Some((load(strip, j * ld + to)?, part(strip, j * ld + from, depth)));
     let (mut s0, b0) = column(0)?;
     let (mut s1, b1) = if N > 1 { column(1)? } else { (s0, b0) };
     let ((mut s2, b2), (mut s3, b3)) = if N > 2 { (column(2)?, column(3)?) } else { ((s0, b0), (s0, b0)) };
-    let mut rest = left;
+    let mut rest = left.get(if kind == Kind::Upper { ROWS * ld } else { 0 }..)?;
     for (((x0, x1), x2), x3) in b0.iter().zip(b1).zip(b2).zip(b3) {
         let (a, others) = rest.split_at_checked(ld)?;
         let a = load(a, to)?;
@@ -193,29 +188,26 @@ fn tile<R: Real, const N: usize>(
             s3 = minus_product(s3, a, *x3);
         }
     }
-    match kind {
-        Kind::Product(_) => {}
-        Kind::Lower(_) => {
-            let t = (load(triangle, to)?, load(triangle, ld + to)?, load(triangle, 2 * ld + to)?);
-            s0 = lower(t, s0);
-            if N > 1 {
-                s1 = lower(t, s1);
-            }
-            if N > 2 {
-                (s2, s3) = (lower(t, s2), lower(t, s3));
-            }
+    if kind == Kind::Lower {
+        let t = (load(rest, to)?, load(rest, ld + to)?, load(rest, 2 * ld + to)?);
+        s0 = lower(t, s0);
+        if N > 1 {
+            s1 = lower(t, s1);
         }
-        Kind::Upper(_) => {
-            let t = (load(triangle, ld + to)?, load(triangle, 2 * ld + to)?, load(triangle, 3 * ld + to)?);
-            let one = R::one();
-            let scale = [one / at(triangle, to), one / t.0[1], one / t.1[2], one / t.2[3]];
-            s0 = upper(t, scale, s0);
-            if N > 1 {
-                s1 = upper(t, scale, s1);
-            }
-            if N > 2 {
-                (s2, s3) = (upper(t, scale, s2), upper(t, scale, s3));
-            }
+        if N > 2 {
+            (s2, s3) = (lower(t, s2), lower(t, s3));
+        }
+    }
+    if kind == Kind::Upper {
+        let t = (load(left, ld + to)?, load(left, 2 * ld + to)?, load(left, 3 * ld + to)?);
+        let (one, (u, v, w)) = (R::one(), t);
+        let scale = [one / *left.get(to)?, one / u[1], one / v[2], one / w[3]];
+        s0 = upper(t, scale, s0);
+        if N > 1 {
+            s1 = upper(t, scale, s1);
+        }
+        if N > 2 {
+            (s2, s3) = (upper(t, scale, s2), upper(t, scale, s3));
         }
     }
     store(s0, strip, to);
@@ -264,6 +256,41 @@ fn upper<R: Real>((u, v, w): (Four<R>, Four<R>, Four<R>), d: Four<R>, [s0, s1, s
     let s2 = (s2 - w[2] * s3) * d[2];
     let s1 = (s1 - w[1] * s3 - v[1] * s2) * d[1];
     [(s0 - w[0] * s3 - v[0] * s2 - u[0] * s1) * d[0], s1, s2, s3]
+}
+
+/// `y −= x l`.
+fn subtract_column<R: Real>(y: &mut [R], x: R, l: &[R]) {
+    let ((y4, y), (l4, l)) = (y.as_chunks_mut::<ROWS>(), l.as_chunks::<ROWS>());
+    for (y, l) in y4.iter_mut().zip(l4) {
+        *y = minus_product(*y, *l, x);
+    }
+    for (y, l) in y.iter_mut().zip(l) {
+        *y -= x * *l;
+    }
+}
+
+/// `y *= x`.
+fn scale_column<R: Real>(y: &mut [R], x: R) {
+    let (y4, y) = y.as_chunks_mut::<ROWS>();
+    for y in y4 {
+        let [y0, y1, y2, y3] = *y;
+        *y = [y0 * x, y1 * x, y2 * x, y3 * x];
+    }
+    for y in y {
+        *y *= x;
+    }
+}
+
+/// The largest magnitude; 0 if there is none but NaN.
+fn largest_of<R: Real>(y: &[R]) -> R {
+    let larger = |m: R, y: R| if y.abs() > m { y.abs() } else { m };
+    let (y4, y) = y.as_chunks::<ROWS>();
+    let zero = R::zero();
+    let (mut m0, mut m1, mut m2, mut m3) = (zero, zero, zero, zero);
+    for [y0, y1, y2, y3] in y4 {
+        (m0, m1, m2, m3) = (larger(m0, *y0), larger(m1, *y1), larger(m2, *y2), larger(m3, *y3));
+    }
+    y.iter().fold(larger(larger(m0, m1), larger(m2, m3)), |m, y| larger(m, *y))
 }
 
 /// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
