@@ -25,10 +25,10 @@ impl<R: Real> Kernel<R> for Portable {
         let (mut smallest, mut largest) = (R::MAX, R::zero());
         for (c, pivot) in pivots.iter_mut().enumerate() {
             let (done, rest) = block.split_at_mut_checked(c * ld)?;
-            let first = c - c % columns::<R>();
+            let first = c - c % ROWS;
             if c == first {
                 // The columns done before act upon a whole strip at once, those of the strip itself one by one.
-                let strip = part_mut(rest, 0, (columns::<R>() * ld).min(rest.len()));
+                let strip = part_mut(rest, 0, (ROWS * ld).min(rest.len()));
                 self.solve_lower(done, ld, k, strip);
                 self.subtract(done, ld, Rows { to: k + c, count: n - k - c, from: k }, strip);
             }
