@@ -131,9 +131,7 @@ fn one_strip<R: Real, const N: usize>(left: &[R], ld: usize, rows: Rows, kind: K
         let (left, row, from, depth) = match kind {
             Kind::Product => (left, done, rows.from, width),
             Kind::Lower => (left, done, rows.from, done),
-            Kind::Upper => {
-                (left.get((rest - count) * ld..).unwrap_or(&[]), rest - count, rows.from + rest, done)
-            }
+            Kind::Upper => (left.get((rest - count) * ld..).unwrap_or(&[]), rest - count, rows.from + rest, done),
         };
         if !whole {
             single_row(left, ld, rows.to + row, from, depth, kind, strip);
