@@ -308,3 +308,49 @@ pub(super) fn divide<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::vec::Vec;
+
+    /// Whether the product and both solutions are right in strips of `N` columns, from row 2 on: exact in small integers.
+    fn right<const N: usize>(width: usize, below: usize) -> bool {
+        let n = 2 + width + below;
+        let ld = n + 1;
+        let entry = |i: usize, j: usize| ((7 * i + 5 * j + i * j) % 5) as f64 - 2.0;
+        let left: Vec<f64> =
+            (0..width * ld).map(|e| if e % ld == 2 + e / ld { 2.0 } else { entry(e % ld, e / ld) }).collect();
+        let x: Vec<f64> = (0..N * ld).map(|e| entry(e % ld, 3 + e / ld)).collect();
+        let product = |row: usize, j: usize, columns: std::ops::Range<usize>| -> f64 {
+            columns.map(|p| left[p * ld + row] * x[j * ld + 2 + p]).sum()
+        };
+        [Kind::Product, Kind::Lower, Kind::Upper].into_iter().all(|kind| {
+            // What comes out is known: x, and what is put in is made from it.
+            let rows = if kind == Kind::Product { 2 + width..n } else { 2..2 + width };
+            let mut strip = x.clone();
+            for j in 0..N {
+                for row in rows.clone() {
+                    strip[j * ld + row] += match kind {
+                        Kind::Product => product(row, j, 0..width),
+                        Kind::Lower => product(row, j, 0..row - 2),
+                        Kind::Upper => product(row, j, row - 2..width) - x[j * ld + row],
+                    };
+                }
+            }
+            one_strip::<f64, N>(&left, ld, Rows { to: rows.start, count: rows.len(), from: 2 }, kind, &mut strip);
+            strip == x
+        })
+    }
+
+    #[test]
+    fn strips_of_every_width_give_what_the_product_was_made_from() {
+        for width in [1, 2, 3, 4, 5, 8, 11, 16] {
+            for below in [0, 1, 4, 7, 12] {
+                let all = [right::<1>(width, below), right::<2>(width, below), right::<4>(width, below)];
+                assert_eq!(all, [true; 3], "{width} columns, {below} rows below");
+            }
+        }
+    }
+}
