@@ -22,7 +22,7 @@ pub(crate) use kernel::{Level as Machine, Task};
 /// Columns of the factors that one pass over the right columns takes: what a row of tiles reads of them fits the first cache.
 const DEPTH: usize = 128;
 
-/// Side of a triangle that is solved at once, and columns that are eliminated together.
+/// Side of a triangle that is solved at once in vectors, and columns that are eliminated together there.
 const BLOCK: usize = 8;
 
 /// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
