@@ -168,7 +168,7 @@ fn tile<R: Real, const N: usize>(
     kind: Kind,
     strip: &mut [R],
 ) -> Option<()> {
-    let column = |j: usize| Some((load(strip, j * ld + to)?, strip.get(j * ld + from..)?.get(..depth)?));
+    let column = |j: usize| Some((load(strip, j * ld + to)?, part(strip, j * ld + from, depth)));
     let (mut s0, b0) = column(0)?;
     let (mut s1, b1) = if N > 1 { column(1)? } else { (s0, b0) };
     let ((mut s2, b2), (mut s3, b3)) = if N > 2 { (column(2)?, column(3)?) } else { ((s0, b0), (s0, b0)) };
