@@ -28,9 +28,9 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
     /// Solves with the upper triangle there.
     fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]);
-    /// Order up to which blocks are eliminated one after the other, without recursion.
-    fn small(self) -> usize {
-        0
+    /// Most columns that [`Kernel::eliminate_block`] and the solves with triangles take.
+    fn block(self) -> usize {
+        super::BLOCK
     }
     /// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`.
     fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]);

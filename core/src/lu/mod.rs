@@ -22,7 +22,7 @@ pub(crate) use kernel::{Level as Machine, Task};
 /// Columns of the factors that one pass over the right columns takes: what a row of tiles reads of them fits the first cache.
 const DEPTH: usize = 128;
 
-/// Side of a triangle that is solved at once, and columns that are eliminated together.
+/// Side of a triangle that is solved at once in vectors, and columns that are eliminated together there.
 const BLOCK: usize = 8;
 
 /// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
@@ -130,11 +130,10 @@ fn eliminate<R: Real, K: Kernel<R>>(
     k: usize,
     pivots: &mut [R],
 ) -> Option<(R, R)> {
-    if pivots.len() <= BLOCK {
+    if pivots.len() <= kernel.block() {
         return kernel.eliminate_block(block, ld, n, k, pivots);
     }
-    // A small matrix stays in the cache anyway, and long columns suit loops that have no tile.
-    let half = if pivots.len() <= kernel.small() { BLOCK } else { pivots.len().div_ceil(2 * BLOCK) * BLOCK };
+    let half = pivots.len().div_ceil(2 * kernel.block()) * kernel.block();
     let (left, right) = block.split_at_mut_checked(half * ld)?;
     let (first, second) = pivots.split_at_mut_checked(half)?;
     let (smallest, largest) = eliminate(kernel, left, ld, n, k, first)?;
@@ -175,10 +174,10 @@ fn reduce<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, n: usize, k: 
 /// Solves with the unit triangle in the rows `k ..` of the columns `left`.
 fn substitute<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, right: &mut [R]) {
     let width = left.len().checked_div(ld).unwrap_or(0);
-    if width <= BLOCK {
+    if width <= kernel.block() {
         return kernel.solve_lower(left, ld, k, right);
     }
-    let half = width.div_ceil(2 * BLOCK) * BLOCK;
+    let half = width.div_ceil(2 * kernel.block()) * kernel.block();
     let (first, second) = left.split_at_checked(half * ld).unwrap_or((&[], &[]));
     substitute(kernel, first, ld, k, right);
     kernel.subtract(first, ld, Rows { to: k + half, count: width - half, from: k }, right);
@@ -188,10 +187,10 @@ fn substitute<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize,
 /// Solves with the upper triangle in the rows `k ..` of the columns `left`.
 fn substitute_back<R: Real, K: Kernel<R>>(kernel: K, left: &[R], ld: usize, k: usize, right: &mut [R]) {
     let width = left.len().checked_div(ld).unwrap_or(0);
-    if width <= BLOCK {
+    if width <= kernel.block() {
         return kernel.solve_upper(left, ld, k, right);
     }
-    let half = width.div_ceil(2 * BLOCK) * BLOCK;
+    let half = width.div_ceil(2 * kernel.block()) * kernel.block();
     let (first, second) = left.split_at_checked(half * ld).unwrap_or((&[], &[]));
     substitute_back(kernel, second, ld, k + half, right);
     kernel.subtract(second, ld, Rows { to: k, count: half, from: k + half }, right);
