@@ -126,7 +126,7 @@ fn long_run() -> Result<String> {
                 let of = |name| csv.cell(*k, name).unwrap_or_default();
                 [of("motion"), of("method"), of("precision")] == [motion, method, precision]
             };
-            let last = (0..csv.rows.len()).filter(own).next_back();
+            let last = (0..csv.rows.len()).rfind(own);
             let Some(k) = last else { return Err(format!("extremes_long_run.csv: no {motion} {method} {precision}")) };
             text += &match (csv.cell(k, "status")?, csv.cell(k, "steps")?, csv.cell(k, "energy_drift_relative")?) {
                 ("Ok", "1000000", drift) => format!(" {drift} |"),
