@@ -5,7 +5,7 @@ use crate::configuration::Poses;
 use crate::contact::{first_misplaced, swept_contact};
 use crate::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
-use crate::model::{Control, Formulation, Model, ModelHead};
+use crate::model::{Control, CoordinateRecord, Formulation, Model, ModelHead};
 use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};
@@ -292,6 +292,21 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
             }
         }
         Ok(())
+    }
+
+    /// The reach of the link that a coordinate moves, or a radian; for a rate that it covers within the step.
+    fn scale(&self, unknown: usize, h: R) -> Option<R> {
+        let (n, model) = (self.model.head.plan.free_coordinates, &self.model);
+        let rates = model.head.plan.formulation != Formulation::LockedMomentum;
+        let (free, time) = match unknown.checked_sub(n) {
+            Some(rate) if rates => (rate, h.abs()),
+            _ => (unknown, R::one()),
+        };
+        let own = |c: &&CoordinateRecord<R>| c.control != Control::Prescribed && c.free == free;
+        // The work of the drives acts on nothing.
+        let Some(c) = model.coordinates.iter().find(own) else { return Some(R::MAX) };
+        let reach = || model.boundaries.get(model.head.plan.walls + c.link).map_or(R::one(), |b| b.reach);
+        Some(if model.is_angle(c) { R::one() } else { reach() } / time)
     }
 }
 

@@ -1,5 +1,5 @@
 //! Writes the tables of the extremes to the folder given: `cargo run --release -p nekton-tests --example extremes docs/accuracy`; one
-//! table if it is named after that; of `long_run` one motion and one method if these are named too.
+//! table if it is named after that; of `long_run` the runs of one motion, method and precision if these are named too.
 
 use nekton_tests::extremes::*;
 use nekton_tests::long_run::{drift_table, step_table};
@@ -44,10 +44,10 @@ fn main() -> std::io::Result<()> {
         std::fs::write(folder.join("extremes_steps.csv"), text)?;
     }
     if wanted("long_run") {
-        let mut text = String::new();
         let path = folder.join("extremes_long_run.csv");
-        let (motion, method) = (arguments.next(), arguments.next());
-        drift_table(&mut text, [motion.as_deref(), method.as_deref()], &mut |text| {
+        let runs: [Option<String>; 3] = std::array::from_fn(|_| arguments.next());
+        let old = if runs[0].is_some() { std::fs::read_to_string(&path)? } else { String::new() };
+        let text = drift_table(&old, runs.each_ref().map(Option::as_deref), &mut |text| {
             if let Err(error) = std::fs::write(&path, text) {
                 eprintln!("{}: {error}", path.display());
             }

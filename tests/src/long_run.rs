@@ -3,6 +3,7 @@
 use crate::{body, disc, hinged, link, simulation, wall};
 use nekton::scalar::Real;
 use nekton::scene::{Drive, Link, Quadrature, Scene, Shape, Signal};
+use nekton::status::Result;
 use nekton::{Method, Sim, SimBuf};
 use std::fmt::Write;
 
@@ -51,13 +52,13 @@ fn sprung_links<R: Real>(method: Method<R>) -> SimBuf<R> {
     simulation(&Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(r(1.0), r(0.0)) }, method)
 }
 
-/// A disc with circulation that circles in a tank.
+/// A disc with circulation that circles in a tank; few nodes here, too.
 fn disc_in_tank<R: Real>(method: Method<R>) -> SimBuf<R> {
     let r = |x: f64| R::lit(x);
-    let links = [Link { circulation: r(3.0), ..link(disc(r(0.5)), r(1.5), 12) }];
+    let links = [Link { circulation: r(3.0), ..link(disc(r(0.5)), r(1.5), 8) }];
     let bodies = [body(&links, [r(0.8), r(0.0), r(0.0)], [r(0.0), r(0.3), r(0.2)])];
-    let tank = Some(wall(Shape::Ellipse { a: r(3.0), b: r(2.5) }, [r(0.0); 2], r(0.0), 20));
-    simulation(&Scene { tank, bodies: &bodies, ..Scene::new(r(1.0), r(0.0)) }, method)
+    let tank = Some(wall(Shape::Ellipse { a: r(3.0), b: r(2.5) }, [r(0.0); 2], r(0.0), 12));
+    simulation(&Scene { tank, bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(r(1.0), r(0.0)) }, method)
 }
 
 /// A motion, its step, s, and whether its impulse is conserved.
@@ -70,17 +71,20 @@ pub struct Motion<R> {
     pub step: f64,
     /// Does nothing hold it?
     pub free: bool,
-    /// Steps of a complete table.
-    pub steps: u64,
 }
+
+/// Steps of a complete table.
+const STEPS: u64 = 1_000_000;
+/// Seconds that a run may take: it does not go on to the next power of ten if that will take longer.
+const LIMIT: f64 = 600.0;
 
 /// The motions of the table.
 pub fn motions<R: Real>() -> [Motion<R>; 4] {
     [
-        Motion { name: "circling_disc", make: circling_disc, step: 0.0271, free: true, steps: 1_000_000 },
-        Motion { name: "tumbling_ellipse", make: tumbling_ellipse, step: 0.1, free: true, steps: 1_000_000 },
-        Motion { name: "sprung_links", make: sprung_links, step: 0.1, free: true, steps: 1_000_000 },
-        Motion { name: "disc_in_tank", make: disc_in_tank, step: 0.1, free: false, steps: 10_000 },
+        Motion { name: "circling_disc", make: circling_disc, step: 0.0271, free: true },
+        Motion { name: "tumbling_ellipse", make: tumbling_ellipse, step: 0.1, free: true },
+        Motion { name: "sprung_links", make: sprung_links, step: 0.1, free: true },
+        Motion { name: "disc_in_tank", make: disc_in_tank, step: 0.1, free: false },
     ]
 }
 
@@ -111,69 +115,99 @@ pub struct Drift {
 const SAMPLES: u64 = 64;
 const STRIDE: u64 = 7;
 
-/// Follows a motion, and tells how far energy and impulse have drifted at every power of ten.
-pub fn drifts<R: Real>(motion: &Motion<R>, method: Method<R>, steps: u64) -> Vec<Drift> {
+/// Follows a motion, and tells how far energy and impulse have drifted at every power of ten, and how it ended: with which
+/// status and after how many steps.
+pub fn drifts<R: Real>(motion: &Motion<R>, method: Method<R>, steps: u64) -> (Vec<Drift>, (&'static str, u64)) {
+    let mut out = Vec::new();
     let mut sim = (motion.make)(method);
     let mut sim = sim.view();
-    let start = sim.impulse().unwrap_or([R::NAN; 3]);
+    let ended = follow(motion, &mut sim, steps, &mut out);
+    (out, (ended.map_or_else(|error| error.status.name(), |()| "Ok"), sim.counters().steps))
+}
+
+fn follow<R: Real>(motion: &Motion<R>, sim: &mut Sim<'_, R>, steps: u64, out: &mut Vec<Drift>) -> Result<()> {
+    let start = sim.impulse()?;
     let size = start.iter().fold(0.0, |m: f64, p| m.max(p.to_f64().abs()));
-    let (mut made, mut first, mut out) = (0, None, Vec::new());
+    let (mut made, mut first, clock) = (0, None, std::time::Instant::now());
     let mut next = SAMPLES * STRIDE;
     while next <= steps {
         while made + SAMPLES * STRIDE < next {
-            // In single precision a variable step may become too short to be told from none: what there is ends there.
-            if sim.step().is_err() {
-                return out;
-            }
+            sim.step()?;
             made += 1;
         }
         let (mut mean, mut kinetic) = (0.0, 0.0_f64);
         for _ in 0..SAMPLES {
             for _ in 0..STRIDE {
-                if sim.step().is_err() {
-                    return out;
-                }
+                sim.step()?;
                 made += 1;
             }
-            let e = sim.energy().unwrap();
+            let e = sim.energy()?;
             mean += (e.total - e.work).to_f64() / SAMPLES as f64;
             kinetic = kinetic.max((e.kinetic_bodies + e.kinetic_fluid).to_f64());
         }
         let (zero, unit) = *first.get_or_insert((mean, kinetic));
-        let impulse = if motion.free { impulse_change(&mut sim, &start) / size } else { f64::NAN };
+        let impulse = if motion.free { impulse_change(sim, &start)? / size } else { f64::NAN };
         out.push(Drift { steps: made, energy: (mean - zero) / unit, impulse });
         next = if next < 1000 { 1000 } else { 10 * next };
+        if clock.elapsed().as_secs_f64() * next as f64 / made as f64 > LIMIT {
+            break;
+        }
     }
-    out
+    Ok(())
 }
 
-fn impulse_change<R: Real>(sim: &mut Sim<'_, R>, start: &[R; 3]) -> f64 {
-    let now = sim.impulse().unwrap();
-    now.iter().zip(start).fold(0.0, |m: f64, (a, b)| m.max((a.to_f64() - b.to_f64()).abs()))
+fn impulse_change<R: Real>(sim: &mut Sim<'_, R>, start: &[R; 3]) -> Result<f64> {
+    let now = sim.impulse()?;
+    Ok(now.iter().zip(start).fold(0.0, |m: f64, (a, b)| m.max((a.to_f64() - b.to_f64()).abs())))
 }
 
-/// Rows of the table of drifts, of all motions or one, of all methods or one; `part_done` is called with what there is after each run.
-pub fn drift_table(text: &mut String, only: [Option<&str>; 2], part_done: &mut dyn FnMut(&str)) {
-    fn part<R: Real>(text: &mut String, only: [Option<&str>; 2], precision: &str, part_done: &mut dyn FnMut(&str)) {
-        let wanted = |name: &str, only: Option<&str>| only.is_none_or(|o| o == name);
-        for motion in motions::<R>().iter().filter(|m| wanted(m.name, only[0])) {
-            for (name, method) in methods::<R>(motion.step).into_iter().filter(|m| wanted(m.0, only[1])) {
-                let clock = std::time::Instant::now();
-                for d in drifts(motion, method, motion.steps) {
-                    let _ = writeln!(
-                        text,
-                        "{},{name},{precision},{},{},{:.1e},{:.1e}",
-                        motion.name, motion.step, d.steps, d.energy, d.impulse
-                    );
+/// The table of drifts, of which runs whose motion, method and precision are named (or all) are made anew, and the others are those
+/// of the table `old`; `part_done` is called with what there is after each run.
+pub fn drift_table(old: &str, only: [Option<&str>; 3], part_done: &mut dyn FnMut(&str)) -> String {
+    fn part<R: Real>(
+        rows: &mut [(String, String)],
+        precision: &str,
+        only: [Option<&str>; 3],
+        done: &mut dyn FnMut(&str),
+    ) {
+        for motion in motions::<R>() {
+            for (name, method) in methods::<R>(motion.step) {
+                let names = [motion.name, name, precision];
+                if names.iter().zip(only).any(|(name, only)| only.is_some_and(|o| o != *name)) {
+                    continue;
                 }
-                println!("{} {name} {precision}: {:.0} s", motion.name, clock.elapsed().as_secs_f64());
-                part_done(text);
+                let (key, clock) = (names.join(",") + ",", std::time::Instant::now());
+                let (drifts, (status, made)) = drifts(&motion, method, STEPS);
+                let mut text = String::new();
+                for d in drifts {
+                    let _ = writeln!(text, "{key}{},{},Ok,{:.1e},{:.1e}", motion.step, d.steps, d.energy, d.impulse);
+                }
+                if status != "Ok" {
+                    let _ = writeln!(text, "{key}{},{made},{status},NaN,NaN", motion.step);
+                }
+                println!("{key} {status}, {made} steps: {:.0} s", clock.elapsed().as_secs_f64());
+                rows.iter_mut().filter(|r| r.0 == key).for_each(|r| r.1.clone_from(&text));
+                done(&table(rows));
             }
         }
     }
-    text.push_str("motion,method,precision,step_s,steps,energy_drift_relative,impulse_drift_relative\n");
-    part::<f64>(text, only, "f64", part_done);
-    part::<f32>(text, only, "f32", part_done);
+    fn table(rows: &[(String, String)]) -> String {
+        let head = "motion,method,precision,step_s,steps,status,energy_drift_relative,impulse_drift_relative\n";
+        rows.iter().fold(head.into(), |text, row| text + &row.1)
+    }
+    let mut rows = Vec::new();
+    for precision in ["f64", "f32"] {
+        for motion in motions::<f64>() {
+            for (name, _) in methods::<f64>(motion.step) {
+                let key = format!("{},{name},{precision},", motion.name);
+                let lines = old.lines().filter(|l| l.starts_with(&key)).map(|l| format!("{l}\n")).collect();
+                rows.push((key, lines));
+            }
+        }
+    }
+    part::<f64>(&mut rows, "f64", only, part_done);
+    part::<f32>(&mut rows, "f32", only, part_done);
+    table(&rows)
 }
 
 /// What one step length comes to on the circling disc.

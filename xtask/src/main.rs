@@ -7,6 +7,7 @@ mod c;
 mod counts;
 mod dist;
 mod expected;
+mod extremes;
 mod firmware;
 mod fuzz;
 mod header;
@@ -15,7 +16,6 @@ mod steps;
 mod test;
 mod trade;
 
-use crate::steps::{cargo, root};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask <command>
@@ -37,8 +37,9 @@ commands:
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
-  extremes [TABLE]
-             docs/accuracy/extremes_*.csv, one table or (in an hour) all of them
+  extremes [--tables | TABLE | long_run MOTION [METHOD [PRECISION]]]
+             docs/accuracy/extremes_*.csv and what the pages tell of them: one table or (in two hours) all, or some of the
+             long runs (--tables: only what is measured already)
   trade [--quick | --resume | --tables | SCENE]
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
              target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already;
@@ -67,8 +68,8 @@ fn main() -> ExitCode {
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["trade", scene] if !scene.starts_with('-') => trade::one(scene),
         ["header"] => header::run(),
-        ["extremes"] => extremes(&[]),
-        ["extremes", table] => extremes(&[table]),
+        ["extremes", "--tables"] => extremes::pages(),
+        ["extremes", runs @ ..] if runs.iter().all(|word| !word.starts_with('-')) => extremes::run(runs),
         ["help" | "--help" | "-h"] => {
             print!("{USAGE}");
             ExitCode::SUCCESS
@@ -78,13 +79,4 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// The complete tables of the extremes.
-fn extremes(table: &[&str]) -> ExitCode {
-    let folder = root().join("docs/accuracy");
-    let mut command =
-        cargo(&["run", "--release", "--quiet", "--package", "nekton-tests", "--example", "extremes", "--"]);
-    let done = command.arg(folder).args(table).status().is_ok_and(|status| status.success());
-    if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

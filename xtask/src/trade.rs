@@ -222,6 +222,11 @@ impl Csv {
         self.rows.get(row).and_then(|r| r.get(column)).map(String::as_str).ok_or_else(|| format!("no row {row}"))
     }
 
+    /// What a row is about.
+    pub fn first(&self, row: usize) -> Result<&str> {
+        self.rows.get(row).and_then(|r| r.first()).map(String::as_str).ok_or_else(|| format!("no row {row}"))
+    }
+
     fn column<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s str> {
         (0..self.rows.len()).filter_map(move |r| self.cell(r, name).ok())
     }

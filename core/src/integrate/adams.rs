@@ -148,7 +148,8 @@ impl<R: Real> Adams<R> {
         Ok(())
     }
 
-    /// Time of the present state.
+    /// Time of the present state, rounded: a sum with compensation lies behind it, so that steps may be shorter than its
+    /// last digit. A stop is met exactly, or if steps are that short to half of the digit.
     pub fn time(&self) -> R {
         self.time
     }
@@ -255,9 +256,9 @@ impl<R: Real> Adams<R> {
         if self.proposed == R::zero() {
             self.proposed = self.first_step(remaining.abs(), b);
         }
-        // Shorter steps would be lost in the rounding of the time, or (near time 0) are beyond hope.
-        let hopeless = R::EPSILON * R::EPSILON * self.proposed.min(remaining.abs());
-        let shortest = (R::lit(16.0) * R::EPSILON * self.time.abs()).max(hopeless).max(R::TINY);
+        // Shorter steps would be lost even in the two parts of the time, or (near time 0) are beyond hope.
+        let hopeless = (R::lit(16.0) * self.time.abs()).max(self.proposed.min(remaining.abs()));
+        let shortest = (R::EPSILON * R::EPSILON * hopeless).max(R::TINY);
         let mut length = self.proposed.max(shortest);
         let mut failures = 0;
         loop {

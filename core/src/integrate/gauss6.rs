@@ -189,7 +189,7 @@ impl<R: Real> Gauss6<R> {
                 break;
             }
         }
-        b.settled(h, y)
+        b.settled(system, h, y)
     }
 }
 
@@ -206,12 +206,14 @@ impl<R: Real> Buffers<'_, R> {
         }
     }
 
-    /// Refuses stages that still move by more than rounding, which errors of the right-hand side may enlarge.
-    fn settled(&self, h: R, y: &[R]) -> Result<()> {
+    /// Refuses stages that still move by more than rounding, which errors of the right-hand side may enlarge. Unknowns are
+    /// compared in units of their scales, and 1 is then as large as the largest of them at least.
+    fn settled<S: System<R> + ?Sized>(&self, system: &S, h: R, y: &[R]) -> Result<()> {
         let (mut change, mut size) = (R::zero(), R::zero());
-        for ((y, f), c) in y.iter().zip(&*self.rate).zip(&*self.change) {
-            change = change.max((h * *c).abs());
-            size = size.max(y.abs()).max((h * *f).abs());
+        for (i, ((y, f), c)) in y.iter().zip(&*self.rate).zip(&*self.change).enumerate() {
+            let (scale, least) = system.scale(i, h).map_or((R::one(), R::zero()), |scale| (scale, R::one()));
+            change = change.max((h * *c).abs() / scale);
+            size = size.max(y.abs().max((h * *f).abs()) / scale).max(least);
         }
         let allowed = size * R::EPSILON.powf(R::lit(2.0 / 3.0));
         if change <= allowed { Ok(()) } else { Err(Error::new(Status::NoConvergence).of("step", h.to_f64())) }

@@ -40,6 +40,12 @@ pub trait System<R> {
     /// `Contact`, `Singular` and `NonFiniteState` say that *this* state has no rate: an integrator that
     /// chooses its steps then tries a shorter one. Any other error ends the step at once.
     fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()>;
+
+    /// A change of an unknown within a step `h` that matters, in its own unit: what makes unknowns of different units
+    /// comparable. `R::MAX` for one that nothing depends on; `None` if all that is known are the values of the unknowns.
+    fn scale(&self, _unknown: usize, _h: R) -> Option<R> {
+        None
+    }
 }
 
 /// What an integrator has done since it was made.

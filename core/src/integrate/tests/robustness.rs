@@ -170,6 +170,24 @@ fn systems_without_unknowns_and_without_motion_reach_the_stop() {
 }
 
 #[test]
+fn adams_goes_on_where_its_clock_can_no_longer_tell_its_steps() {
+    // Steps of about 0.2, where the time has a last digit of 1/16, 1, 8: the stop is met to half of that.
+    for (start, digit) in [(0.0, 0.0), (1e6, 0.0625), (-1e6, 0.0625), (1e7, 1.0), (1e8, 8.0)] {
+        let (mut adams, mut work) = started(1e-6, 1e-6, start, &[1.0, 0.0]);
+        let mut system = ode(2, |_: f32, y: &[f32], d: &mut [f32]| {
+            d.copy_from_slice(&[y[1], -y[0]]);
+            Ok(())
+        });
+        run(&mut adams, &mut system, start + 64.0, &mut work).unwrap();
+        let [x, v] = [0, 1].map(|i| f64::from(adams.state(&work)[i]));
+        let ahead = (f64::atan2(-v, x) - 64.0).sin().asin();
+        std::println!("{start:e}: {:?}, {ahead:e}, {:e}", adams.counters(), x.hypot(v) - 1.0);
+        assert!((x.hypot(v) - 1.0).abs() < 3e-4 && adams.counters().steps > 200, "{start}");
+        assert!(ahead.abs() < 3e-4 + 0.5 * digit, "{start}");
+    }
+}
+
+#[test]
 fn no_step_is_longer_than_asked() {
     let mut adams = Adams::new(1e-4, 1e-4, Some(0.03)).unwrap();
     let mut work = [0.0; 21];
