@@ -56,7 +56,7 @@ impl<R: Real> Preimage<R> {
 
 /// The pole term falls like (π/N) e^(−N |Im x|/2): beyond this exponent it is lost in rounding.
 pub(crate) fn reach<R: Real>() -> R {
-    -R::EPSILON.ln() - R::lit(3.0)
+    -R::EPSILON.ln() * R::lit(0.55)
 }
 
 /// A boundary as the source of a pole.
