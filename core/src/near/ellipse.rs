@@ -22,7 +22,8 @@ impl<R: Real> Source<'_, R> {
         if targets.own && ratio.abs() * limit < R::one() {
             return;
         }
-        Machine::here().run(OnEllipse { source: self, e, ratio, limit, targets, visit });
+        let most = reach::<R>() * R::TWO / R::count(self.nodes.t.len());
+        Machine::here().run(OnEllipse { source: self, e, ratio, limit, most, targets, visit });
     }
 }
 
@@ -31,6 +32,8 @@ struct OnEllipse<'a, 'b, R, F> {
     e: Ellipse<R>,
     ratio: R,
     limit: R,
+    /// |Im s| beyond which it is lost.
+    most: R,
     targets: &'b Targets<'b, R>,
     visit: F,
 }
@@ -53,17 +56,16 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
         for first in (0..n).step_by(LANES) {
             let z = self.points(first);
             let (roots, angles) = self.roots(first, &z);
+            let heights = [self.heights(&roots[0]), self.heights(&roots[1])];
             for i in 0..LANES {
                 if first + i >= n {
                     break;
                 }
-                for (w, angle) in roots.iter().zip(&angles) {
-                    let w = complex(w[0][i], w[1][i]);
-                    let size = w.re * w.re + w.im * w.im;
-                    let (least, most) = (R::one() / (self.limit * self.limit), self.limit * self.limit);
-                    if !(size > least && size < most) {
+                for ((w, angle), height) in roots.iter().zip(&angles).zip(&heights) {
+                    if height[i] > self.most {
                         continue;
                     }
+                    let w = complex(w[0][i], w[1][i]);
                     pending.push(first + i, nearest(self.source.nodes.t, angle[i]), complex(z[0][i], z[1][i]), w);
                     if pending.count == LANES {
                         self.complete(&pending);
@@ -105,6 +107,26 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
             (z[0][i], z[1][i]) = (x.re, x.im);
         }
         z
+    }
+
+    /// |Im s| at roots; the largest number where W is out of the strip.
+    #[inline(always)]
+    fn heights(&self, w: &Pairs<R>) -> [R; LANES] {
+        let mut size = [R::zero(); LANES];
+        let (least, most) = (R::one() / (self.limit * self.limit), self.limit * self.limit);
+        let mut any = false;
+        for i in 0..LANES {
+            size[i] = w[0][i] * w[0][i] + w[1][i] * w[1][i];
+            any |= size[i] > least && size[i] < most;
+        }
+        let mut heights = [R::MAX; LANES];
+        if any {
+            heights = self.source.view.grading.heights(w, &size);
+            for i in 0..LANES {
+                heights[i] = if size[i] > least && size[i] < most { heights[i] } else { R::MAX };
+            }
+        }
+        heights
     }
 
     /// W of both roots, the one next to the outline first, and their angles; 0 for those that do not count.

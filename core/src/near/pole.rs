@@ -119,15 +119,17 @@ impl<R: Real> Task for Weights<'_, R> {
     #[inline(always)]
     fn run(self) {
         let f = self.row.factor * self.turn.conj() * self.out.scale;
-        let mut entries = self.out.data.iter_mut().step_by(self.out.stride.max(1));
+        let mut columns = self.out.data.chunks_mut(self.out.stride.max(1));
         for first in (0..self.cos.len()).step_by(LANES) {
             let [mut re, im] = cotangents(self.row.tangent, self.cos, self.sin, first);
             for i in 0..LANES {
                 re[i] = (f.re * re[i] - f.im * im[i]) * sign::<R>(i);
             }
             let count = LANES.min(self.cos.len() - first);
-            for (w, entry) in re.iter().zip(entries.by_ref().take(count)) {
-                *entry += *w;
+            for (w, column) in re.iter().take(count).zip(&mut columns) {
+                if let [entry, ..] = column {
+                    *entry += *w;
+                }
             }
         }
     }
