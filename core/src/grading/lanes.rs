@@ -113,11 +113,12 @@ impl<R: Real> Grading<'_, R> {
         for [_, sin_p, weight, decay, _, _, cos_p] in self.each() {
             let (fall, half) = (decay * decay, weight * R::HALF);
             let (c, s) = (fall * (cos_p * cos_p - sin_p * sin_p), fall * R::TWO * sin_p * cos_p);
-            let least = fall * fall;
             for i in 0..L {
-                // |1 − e^(−b) W e^(−ip)|², |W − e^(−b) e^(ip)|²
-                let twice = R::TWO * (w[0][i] * c + w[1][i] * s);
-                let (up, down) = (R::one() - twice + least * square[i], square[i] - twice + least);
+                let (x, y) = (w[0][i], w[1][i]);
+                // W e^(−ip − b) − 1 and W − e^(ip − b)
+                let (up, up_y) = (x * c + y * s - R::one(), y * c - x * s);
+                let (down, down_y) = (x - c, y - s);
+                let (up, down) = (up * up + up_y * up_y, down * down + down_y * down_y);
                 height[i] += half * ln_1p((up * square[i] - down) / down);
             }
         }
