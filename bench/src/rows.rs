@@ -146,7 +146,7 @@ fn fewest_nodes(columns: usize, rows: usize, gap: f64, error: f64) -> Result<usi
         let pairs = evaluation.accelerations().iter().zip(reference.accelerations());
         pairs.fold(0.0f64, |m, (x, y)| m.max((x - y).abs())) <= error * scale
     };
-    (16..=256).step_by(8).find(|n| accurate(*n)).ok_or_else(|| format!("not reached with 256 nodes, gap {gap}"))
+    (16..=256).step_by(4).find(|n| accurate(*n)).ok_or_else(|| format!("not reached with 256 nodes, gap {gap}"))
 }
 
 fn at_equal_accuracy(lapack: &Lapack, columns: usize, rows: usize, gap: f64, error: f64) -> Result<Measured, String> {

@@ -3,7 +3,7 @@
 #![allow(clippy::indexing_slicing)] // All indices run over arrays of the same constant length.
 
 use super::Grading;
-use crate::elementary::{atan2, catan, nearest, product, quotient, sin_cos, small_sine};
+use crate::elementary::{atan2, catan, ln_1p, nearest, product, quotient, sin_cos, small_sine};
 use crate::lu::{Machine, Task};
 use crate::scalar::Real;
 use crate::status::Result;
@@ -100,6 +100,29 @@ impl<R: Real> Grading<'_, R> {
             last = [s[LANES - 1], chunk.t[LANES - 1]];
         }
         Ok(())
+    }
+
+    /// |Im s| at complex parameters t, W = e^(it), of which |W|² is given too: Im S(v; b) = Im v + ln |1 − e^(iv − b)|
+    /// − ln |1 − e^(−iv − b)|. Not finite at W = 0.
+    #[inline(always)]
+    pub(crate) fn heights<const L: usize>(&self, w: &[[R; L]; 2], square: &[R; L]) -> [R; L] {
+        let mut height = *square;
+        for height in &mut height {
+            *height = -ln_1p(*height - R::one()) * R::HALF;
+        }
+        for [_, sin_p, weight, decay, _, _, cos_p] in self.each() {
+            let (fall, half) = (decay * decay, weight * R::HALF);
+            let (c, s) = (fall * (cos_p * cos_p - sin_p * sin_p), fall * R::TWO * sin_p * cos_p);
+            for i in 0..L {
+                let (x, y) = (w[0][i], w[1][i]);
+                // W e^(−ip − b) − 1 and W − e^(ip − b)
+                let (up, up_y) = (x * c + y * s - R::one(), y * c - x * s);
+                let (down, down_y) = (x - c, y - s);
+                let (up, down) = (up * up + up_y * up_y, down * down + down_y * down_y);
+                height[i] += half * ln_1p((up * square[i] - down) / down);
+            }
+        }
+        height.map(|h| h.abs())
     }
 
     /// s(t + u) − s(t) to relative accuracy in the complex offset u, and s′(t + u). |Im u| below the smallest rung's scale, and

@@ -324,6 +324,23 @@ mod tests {
     }
 
     #[test]
+    fn heights_are_imaginary_parts_of_the_map() {
+        for ladders in CASES {
+            let (data, rungs) = store(ladders);
+            let grading = Grading::read(&data, rungs);
+            let finest = ladders.iter().fold(1.0f64, |m, l| m.min(l.beta));
+            for k in 0..60 {
+                let t = grading.node(k, 60).unwrap();
+                let u = complex(0.3, if k % 2 == 0 { 0.8 } else { -0.8 }) * finest;
+                let (w, size) = (cis(t + u.re) * (-u.im).exp(), (-2.0 * u.im).exp());
+                let [height] = grading.heights(&[[w.re], [w.im]], &[size]);
+                let exact = jump(&grading, t, u)[0].im.abs();
+                assert!((height - exact).abs() < 1e-13 * (1.0 + 1.0 / finest), "{t} {height} {exact}");
+            }
+        }
+    }
+
+    #[test]
     fn ladders_that_coincide_share_their_weight() {
         let (one, rungs) = store(&[ladder(2.0, 0.01)]);
         let (two, _) = store(&[ladder(2.0, 0.01), ladder(2.0, 0.01)]);

@@ -6,9 +6,9 @@ use crate::elementary::{atan2, cln_1p, csqrt, product, quotient, sin_cos};
 use crate::grading::{LANES, Offset};
 use crate::lu::{Machine, Task};
 use crate::near::Preimage;
-use crate::near::preimage::{Roots, Source, Targets, reach, wrapped};
+use crate::near::preimage::{Roots, Source, Targets, reach};
 use crate::scalar::{Complex, Real, complex};
-use crate::workspace::at;
+use crate::workspace::{at, put};
 
 type Pairs<R> = [[R; LANES]; 2];
 
@@ -22,7 +22,8 @@ impl<R: Real> Source<'_, R> {
         if targets.own && ratio.abs() * limit < R::one() {
             return;
         }
-        Machine::here().run(OnEllipse { source: self, e, ratio, limit, targets, visit });
+        let most = reach::<R>() * R::TWO / R::count(self.nodes.t.len());
+        Machine::here().run(OnEllipse { source: self, e, ratio, limit, most, targets, visit });
     }
 }
 
@@ -31,6 +32,8 @@ struct OnEllipse<'a, 'b, R, F> {
     e: Ellipse<R>,
     ratio: R,
     limit: R,
+    /// |Im s| beyond which it is lost.
+    most: R,
     targets: &'b Targets<'b, R>,
     visit: F,
 }
@@ -52,19 +55,19 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
         let n = self.targets.nodes.x.len();
         for first in (0..n).step_by(LANES) {
             let z = self.points(first);
-            let (roots, angles) = self.roots(first, &z);
+            let roots = self.roots(first, &z);
+            let nodes = [nearest(self.source.nodes.t, &roots[0]), nearest(self.source.nodes.t, &roots[1])];
+            let heights = [self.heights(&roots[0]), self.heights(&roots[1])];
             for i in 0..LANES {
                 if first + i >= n {
                     break;
                 }
-                for (w, angle) in roots.iter().zip(&angles) {
-                    let w = complex(w[0][i], w[1][i]);
-                    let size = w.re * w.re + w.im * w.im;
-                    let (least, most) = (R::one() / (self.limit * self.limit), self.limit * self.limit);
-                    if !(size > least && size < most) {
+                for ((w, node), height) in roots.iter().zip(&nodes).zip(&heights) {
+                    if height[i] > self.most {
                         continue;
                     }
-                    pending.push(first + i, nearest(self.source.nodes.t, angle[i]), complex(z[0][i], z[1][i]), w);
+                    let w = complex(w[0][i], w[1][i]);
+                    pending.push(first + i, node[i], complex(z[0][i], z[1][i]), w);
                     if pending.count == LANES {
                         self.complete(&pending);
                         pending.count = 0;
@@ -82,11 +85,16 @@ impl<R: Real> Pending<R> {
     /// The first one fills all lanes, so that none holds garbage.
     #[inline(always)]
     fn push(&mut self, row: usize, node: usize, z: Complex<R>, w: Complex<R>) {
-        for i in 0..LANES {
-            if i == self.count || self.count == 0 {
-                (self.row[i], self.node[i]) = (row, node);
-                (self.z[0][i], self.z[1][i], self.w[0][i], self.w[1][i]) = (z.re, z.im, w.re, w.im);
-            }
+        if self.count == 0 {
+            self.node = [node; LANES];
+            (self.z, self.w) = ([[z.re; LANES], [z.im; LANES]], [[w.re; LANES], [w.im; LANES]]);
+        }
+        if let (Some(r), Some(n)) = (self.row.get_mut(self.count), self.node.get_mut(self.count)) {
+            (*r, *n) = (row, node);
+        }
+        let ([x, y], [u, v]) = (&mut self.z, &mut self.w);
+        for (lanes, value) in [(x, z.re), (y, z.im), (u, w.re), (v, w.im)] {
+            put(lanes, self.count, value);
         }
         self.count += 1;
     }
@@ -107,11 +115,30 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
         z
     }
 
-    /// W of both roots, the one next to the outline first, and their angles; 0 for those that do not count.
+    /// |Im s| at roots; the largest number where W is out of the strip.
     #[inline(always)]
-    fn roots(&self, first: usize, z: &Pairs<R>) -> ([Pairs<R>; 2], Pairs<R>) {
-        let zero = [[R::zero(); LANES]; 2];
-        let (mut roots, mut angles) = ([zero; 2], zero);
+    fn heights(&self, w: &Pairs<R>) -> [R; LANES] {
+        let mut size = [R::zero(); LANES];
+        let (least, most) = (R::one() / (self.limit * self.limit), self.limit * self.limit);
+        let mut any = false;
+        for i in 0..LANES {
+            size[i] = w[0][i] * w[0][i] + w[1][i] * w[1][i];
+            any |= size[i] > least && size[i] < most;
+        }
+        let mut heights = [R::MAX; LANES];
+        if any {
+            heights = self.source.view.grading.heights(w, &size);
+            for i in 0..LANES {
+                heights[i] = if size[i] > least && size[i] < most { heights[i] } else { R::MAX };
+            }
+        }
+        heights
+    }
+
+    /// W of both roots, the one next to the outline first; 0 for those that do not count.
+    #[inline(always)]
+    fn roots(&self, first: usize, z: &Pairs<R>) -> [Pairs<R>; 2] {
+        let mut roots = [[[R::zero(); LANES]; 2]; 2];
         let (sum, ratio, origin) = (self.e.a + self.e.b, self.ratio, self.source.record.origin);
         let t = self.source.nodes.t;
         if self.targets.own {
@@ -136,12 +163,7 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
                 (roots[1][0][i], roots[1][1][i]) = (other[0], other[1]);
             }
         }
-        for (root, angle) in roots.iter().zip(&mut angles) {
-            for i in 0..LANES {
-                angle[i] = atan2(root[1][i], root[0][i]);
-            }
-        }
-        (roots, angles)
+        roots
     }
 
     /// The roots W counted from nodes: with W = e^(it_j) (1 + ε), P = (a + b) W_j/2, Q = (a − b)/(2 W_j) and d = z − Γ_j the
@@ -207,12 +229,26 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
     }
 }
 
-/// The node whose parameter is closest to t in [−π, π]; parameters increase from 0 to below 2π.
-fn nearest<R: Real>(nodes: &[R], t: R) -> usize {
-    let t = if t < R::zero() { t + R::TAU } else { t };
-    let after = nodes.partition_point(|x| *x < t);
-    let before = if after == 0 { nodes.len().saturating_sub(1) } else { after - 1 };
-    let after = if after == nodes.len() { 0 } else { after };
-    let gap = |k: usize| wrapped(at(nodes, k) - t).abs();
-    if gap(before) < gap(after) { before } else { after }
+/// The nodes whose parameters are closest to the angles of `w`; parameters increase from 0 to below 2π.
+#[inline(always)]
+fn nearest<R: Real>(nodes: &[R], w: &Pairs<R>) -> [usize; LANES] {
+    let mut t = [R::zero(); LANES];
+    for i in 0..LANES {
+        let angle = atan2(w[1][i], w[0][i]);
+        t[i] = if angle < R::zero() { angle + R::TAU } else { angle };
+    }
+    let mut after = [R::zero(); LANES];
+    for x in nodes {
+        for i in 0..LANES {
+            after[i] += if *x < t[i] { R::one() } else { R::zero() };
+        }
+    }
+    let (first, last) = (at(nodes, 0), at(nodes, nodes.len().saturating_sub(1)));
+    core::array::from_fn(|i| {
+        let after = after[i].to_f64() as usize;
+        let before = nodes.get(after.wrapping_sub(1)).copied().unwrap_or(last - R::TAU);
+        let next = nodes.get(after).copied().unwrap_or(first + R::TAU);
+        let k = if t[i] - before < next - t[i] { after + nodes.len() - 1 } else { after };
+        if k >= nodes.len() { k - nodes.len() } else { k }
+    })
 }

@@ -9,6 +9,7 @@ use crate::contact::{Placed, apart, closest_points, foot};
 use crate::curve::Curve;
 use crate::grading::Ladder;
 use crate::model::Model;
+use crate::near::preimage::wrapped;
 use crate::near::{LADDER_LIST, MOST_LADDERS};
 use crate::scalar::{Complex, Real, cabs};
 use crate::workspace::{at, part, part_mut, put};
@@ -95,6 +96,29 @@ pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &
                 place_pair(model.store, (i, &a), (j, &b), lists);
             }
         }
+    }
+    lists.chunks_exact_mut(LADDER_LIST).for_each(thin);
+}
+
+/// Fades ladders of tips and their feet where a closest point already asks for as much: mostly it lies at the tip itself.
+pub(crate) fn thin<R: Real>(list: &mut [R]) {
+    let count = crate::near::ladder_count(list);
+    let (closest, half) = (R::lit(TOP), R::HALF);
+    for i in 0..count {
+        let &[t, beta, top] = part(list, 2 + 3 * i, 3) else { continue };
+        if top == closest {
+            continue;
+        }
+        let mut cover = R::zero();
+        for &[t2, beta2, top2] in part(list, 2, 3 * count).as_chunks::<3>().0 {
+            if top2 == closest {
+                // At this distance the other one resolves that much, as far as it has not faded itself.
+                let finest = beta2.max(wrapped(t - t2).abs() * R::lit(3.0));
+                let strength = R::one().min((top2 / beta2).ln());
+                cover = cover.max((R::lit(1.5) - finest / beta) / half * strength);
+            }
+        }
+        put(list, 2 + 3 * i + 2, beta * (top / beta).powf(R::one() - cover.min(R::one())));
     }
 }
 

@@ -67,6 +67,16 @@ pub(super) fn load<R: Real>(data: &[R], from: usize, fill: R) -> [R; LANES] {
     })
 }
 
+/// First nodes of blocks of lanes that cover `n` nodes, each with the number of lanes that the one before covers already: the last
+/// one begins early instead of ending late, so that memory is read as it lies. Fewer nodes than lanes are one block.
+#[inline(always)]
+fn blocks(n: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..n).step_by(LANES).map(move |first| match first + LANES {
+        end if end <= n || n < LANES => (first, 0),
+        end => (n - LANES, end - n),
+    })
+}
+
 /// cot((x + mh)/2), m = j − k, at the nodes from `first` on: the table holds the angle −m h/2. (c − τ s)(τ c + s)* has the
 /// imaginary part −Im τ.
 #[inline(always)]
@@ -119,15 +129,17 @@ impl<R: Real> Task for Weights<'_, R> {
     #[inline(always)]
     fn run(self) {
         let f = self.row.factor * self.turn.conj() * self.out.scale;
-        let mut entries = self.out.data.iter_mut().step_by(self.out.stride.max(1));
-        for first in (0..self.cos.len()).step_by(LANES) {
+        let mut columns = self.out.data.chunks_mut(self.out.stride.max(1));
+        for (first, skip) in blocks(self.cos.len()) {
             let [mut re, im] = cotangents(self.row.tangent, self.cos, self.sin, first);
+            let f = f * sign::<R>(first);
             for i in 0..LANES {
                 re[i] = (f.re * re[i] - f.im * im[i]) * sign::<R>(i);
             }
-            let count = LANES.min(self.cos.len() - first);
-            for (w, entry) in re.iter().zip(entries.by_ref().take(count)) {
-                *entry += *w;
+            for (w, column) in part(&re, skip, LANES - skip).iter().zip(&mut columns) {
+                if let [entry, ..] = column {
+                    *entry += *w;
+                }
             }
         }
     }
@@ -137,11 +149,11 @@ impl<R: Real> Task for Weights<'_, R> {
 pub(crate) fn sum_of_weights<R: Real>(pre: &Preimage<R>, table: &[R], nodes: usize) -> Complex<R> {
     let (mut re, mut im) = (R::zero(), R::zero());
     let (cos, sin) = turned(table, nodes, pre.node);
-    for first in (0..cos.len()).step_by(LANES) {
+    for (first, skip) in blocks(cos.len()) {
         let cot = cotangents(pre.tangent, cos, sin, first);
-        for i in 0..LANES.min(cos.len() - first) {
-            re += cot[0][i] * sign(i);
-            im += cot[1][i] * sign(i);
+        for i in skip..LANES.min(cos.len()) {
+            re += cot[0][i] * sign(first + i);
+            im += cot[1][i] * sign(first + i);
         }
     }
     pre.factor * complex(re, im)
@@ -196,14 +208,17 @@ impl<R: Real> Task for Products<'_, R> {
     fn run(self) {
         let mut sums = [[R::zero(); LANES]; 2];
         let g = self.g;
-        for (block, out) in self.out.chunks_mut(LANES).enumerate() {
-            let first = block * LANES;
+        for (first, skip) in blocks(self.w.len()) {
             let [re, im] = slopes(&self.row, self.cos, self.sin, first);
-            let (w, mut sum) = (load(self.w, first, R::zero()), load(out, 0, R::zero()));
+            let mut w = load(self.w, first, R::zero());
+            let out = self.out.get_mut(first..).unwrap_or(&mut []);
+            let mut sum = load(out, 0, R::zero());
+            let g = g * sign::<R>(first);
             for i in 0..LANES {
+                w[i] = if i < skip { R::zero() } else { w[i] * sign(first) };
                 sums[0][i] += re[i] * w[i];
                 sums[1][i] += im[i] * w[i];
-                sum[i] += g.re * im[i] + g.im * re[i];
+                sum[i] += if i < skip { R::zero() } else { g.re * im[i] + g.im * re[i] };
             }
             match out.first_chunk_mut() {
                 Some(out) => *out = sum,
@@ -246,10 +261,12 @@ impl<R: Real> Task for Sum<'_, R> {
     #[inline(always)]
     fn run(self) {
         let mut sums = [[R::zero(); LANES]; 2];
-        for first in (0..self.cos.len()).step_by(LANES) {
+        for (first, skip) in blocks(self.cos.len()) {
             let [re, im] = slopes(&self.row, self.cos, self.sin, first);
-            let (x, y) = (load(self.wx, first, R::zero()), load(self.wy, first, R::zero()));
+            let (mut x, mut y) = (load(self.wx, first, R::zero()), load(self.wy, first, R::zero()));
             for i in 0..LANES {
+                let factor = if i < skip { R::zero() } else { sign(first) };
+                (x[i], y[i]) = (x[i] * factor, y[i] * factor);
                 sums[0][i] += re[i] * x[i] - im[i] * y[i];
                 sums[1][i] += re[i] * y[i] + im[i] * x[i];
             }

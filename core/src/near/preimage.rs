@@ -54,9 +54,11 @@ impl<R: Real> Preimage<R> {
     }
 }
 
-/// The pole term falls like (π/N) e^(−N |Im x|/2): beyond this exponent it is lost in rounding.
+/// The pole term falls like (π/N) e^(−N |Im x|/2) and acts on what is left of the density at the end of its spectrum, which by then
+/// has fallen as much: beyond this exponent, e^(−20) in double precision, nothing of it is seen (with e^(−17) it is, in the 13th
+/// digit).
 pub(crate) fn reach<R: Real>() -> R {
-    -R::EPSILON.ln() - R::lit(3.0)
+    -R::EPSILON.ln() * R::lit(0.55)
 }
 
 /// A boundary as the source of a pole.
