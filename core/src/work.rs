@@ -278,18 +278,23 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
         let mut asymmetry = R::zero();
-        // What does not move adds nothing.
-        let moves = |column: &[R]| {
-            let first = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
-            (first, column.iter().rposition(|x| *x != R::zero()).map_or(0, |last| last + 1 - first))
-        };
+        // What does not move adds nothing: of each column the first row that moves and how many follow.
+        for (column, (first, count)) in
+            self.jacobian.chunks_exact(rows.max(1)).zip(self.drift.iter_mut().zip(self.inertial.iter_mut()))
+        {
+            let begin = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
+            let end = column.iter().rposition(|x| *x != R::zero()).map_or(begin, |last| last + 1);
+            (*first, *count) = (R::count(begin), R::count(end - begin));
+        }
+        let (first, count) = (&*self.drift, &*self.inertial);
+        let moves = |k: usize| (at(first, k).to_f64() as usize, at(count, k).to_f64() as usize);
         let product = |column: &[R], (first, count): (usize, usize), momentum: &[R]| {
             let pairs = part(column, first, count).iter().zip(part(momentum, first, count));
             pairs.fold(R::zero(), |s, (x, y)| s + *x * *y)
         };
         for k in 0..n {
             let (column, momentum) = (part(self.jacobian, k * rows, rows), part(self.momenta, k * rows, rows));
-            let own = moves(column);
+            let own = moves(k);
             copy(self.spare, column);
             for (p, l) in self.spare.as_chunks_mut::<3>().0.iter_mut().zip(model.links) {
                 for (p, m) in p.iter_mut().zip([l.mass, l.mass, l.inertia]) {
@@ -299,10 +304,12 @@ impl<R: Real> Work<'_, R> {
             // The diagonal first: the asymmetry of the others is measured by it.
             for j in (0..=k).rev() {
                 let other = part(self.jacobian, j * rows, rows);
-                let moved = moves(other);
+                let moved = moves(j);
                 let halves =
                     [product(other, moved, momentum), product(column, own, part(self.momenta, j * rows, rows))];
-                let sum = (halves[0] + halves[1]) * R::HALF + product(other, moved, self.spare);
+                let common = own.0 < moved.0 + moved.1 && moved.0 < own.0 + own.1;
+                let bodies = if common { product(other, moved, self.spare) } else { R::zero() };
+                let sum = (halves[0] + halves[1]) * R::HALF + bodies;
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
                 if j == k {
