@@ -158,9 +158,8 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
         let sums = bhx.iter_mut().zip(bhy.iter_mut()).zip(b.out.iter_mut());
         let nodes = b.nodes.points().zip(b.nodes.tangents());
         for (((g, dg), ((bfx, bfy), w)), ((bhx, bhy), sum)) in nodes.zip(weights).zip(sums) {
-            let weight = dg * factor;
-            let one = One { g, c: weight * *w, f: turned * complex(*bfx, *bfy) };
-            let mut total = [[R::zero(); LANES]; 4];
+            let one = One { g, weight: dg * factor, w: *w, f: turned * complex(*bfx, *bfy) };
+            let mut total = [[R::zero(); LANES]; 3];
             let changed = hx.0.iter_mut().zip(hy.0.iter_mut()).zip(out.0.iter_mut());
             for (((hx, hy), out), (((x, y), (fx, fy)), ((dx, dy), u))) in changed.zip(whole.clone()) {
                 let far = [*x, *y, *fx, *fy, *dx, *dy, *u];
@@ -177,11 +176,9 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
                 put_lanes(new[2], out.1);
                 total = sums;
             }
-            let [re, mut im, vx, vy] = total;
-            for (im, re) in im.iter_mut().zip(re) {
-                *im = weight.re * *im + weight.im * re;
-            }
-            *sum += sum_of(im);
+            // Through memory: else the sums are carried lane by lane through the loop above.
+            let [own, vx, vy] = core::hint::black_box(total);
+            *sum += sum_of(own);
             *bhx = sum_of(vx);
             *bhy = sum_of(vy);
         }
@@ -192,11 +189,12 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
     }
 }
 
-/// A node of `b`: where it is, what it carries as a source, and its weight as a target in the frame of `a`.
+/// A node of `b`: where it is, its weight and density as a source, its weight as a target (turned to the frame of `a`).
 #[derive(Clone, Copy)]
 struct One<R> {
     g: Complex<R>,
-    c: Complex<R>,
+    weight: Complex<R>,
+    w: R,
     f: Complex<R>,
 }
 
@@ -207,9 +205,9 @@ fn both<R: Real>(
     one: One<R>,
     [x, y, fx, fy, dx, dy, u]: [[R; LANES]; 7],
     [mut hx, mut hy, mut out]: [[R; LANES]; 3],
-    [mut re, mut im, mut vx, mut vy]: [[R; LANES]; 4],
-) -> ([[R; LANES]; 3], [[R; LANES]; 4]) {
-    let One { g, c, f } = one;
+    [mut own, mut vx, mut vy]: [[R; LANES]; 3],
+) -> ([[R; LANES]; 3], [[R; LANES]; 3]) {
+    let One { g, weight, w, f } = one;
     let (mut sx, mut sy) = ([R::zero(); LANES], [R::zero(); LANES]);
     for (((sx, sy), x), y) in sx.iter_mut().zip(&mut sy).zip(x).zip(y) {
         let (dx, dy) = (g.re - x, g.im - y);
@@ -217,24 +215,24 @@ fn both<R: Real>(
         let (ex, ey) = (dx * inverse, -dy * inverse);
         (*sx, *sy) = (ex * ex - ey * ey, (ex + ex) * ey);
     }
-    for ((v, sx), sy) in hx.iter_mut().zip(sx).zip(sy) {
-        *v += c.re * sx - c.im * sy;
+    // D of the node of `b` as a source, apart from its density.
+    let (mut px, mut py) = (sx, sy);
+    for (px, py) in px.iter_mut().zip(&mut py) {
+        (*px, *py) = (*px * weight.re - *py * weight.im, *px * weight.im + *py * weight.re);
     }
-    for ((v, sx), sy) in hy.iter_mut().zip(sx).zip(sy) {
-        *v += c.re * sy + c.im * sx;
+    for (h, p) in hx.iter_mut().zip(px) {
+        *h += p * w;
     }
-    for ((((re, sx), sy), fx), fy) in re.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
-        *re += sx * fx - sy * fy;
+    for (h, p) in hy.iter_mut().zip(py) {
+        *h += p * w;
     }
-    for ((((im, sx), sy), fx), fy) in im.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
-        *im += sx * fy + sy * fx;
+    for ((own, (px, py)), (fx, fy)) in own.iter_mut().zip(px.iter().zip(&py)).zip(fx.iter().zip(&fy)) {
+        *own += *px * *fy + *py * *fx;
     }
+    // The same of the eight nodes of `a`.
     let (mut qx, mut qy) = (sx, sy);
     for (((qx, qy), dx), dy) in qx.iter_mut().zip(&mut qy).zip(dx).zip(dy) {
         (*qx, *qy) = (*qx * dx - *qy * dy, *qx * dy + *qy * dx);
-    }
-    for ((out, qx), qy) in out.iter_mut().zip(qx).zip(qy) {
-        *out += f.re * qy + f.im * qx;
     }
     for ((v, q), u) in vx.iter_mut().zip(qx).zip(u) {
         *v += q * u;
@@ -242,7 +240,10 @@ fn both<R: Real>(
     for ((v, q), u) in vy.iter_mut().zip(qy).zip(u) {
         *v += q * u;
     }
-    ([hx, hy, out], [re, im, vx, vy])
+    for ((out, qx), qy) in out.iter_mut().zip(qx).zip(qy) {
+        *out += f.re * qy + f.im * qx;
+    }
+    ([hx, hy, out], [own, vx, vy])
 }
 
 /// Adds Im(ż h) at the nodes of a side to `rates`, and sums what its pose gradient consists of.

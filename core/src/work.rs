@@ -9,7 +9,8 @@ use crate::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
-use crate::scalar::{Complex, Real};
+use crate::scalar::Real;
+use crate::se2::Twist;
 use crate::status::{Error, Result, Status};
 use crate::workspace::{at, axpy, buffers, copy, part, part_mut, put};
 
@@ -377,16 +378,9 @@ impl<R: Real> Work<'_, R> {
 
 /// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
 pub(crate) fn lone_momentum<R: Real>(c: &Configuration<'_, R>, v: &[R], out: &mut [R]) {
-    let turn = c.pose(0);
+    let (turn, density) = (c.pose(0), c.model.head.fluid_density);
     let v = twist_of(v, 0);
-    let b = turn.unturned(v.linear);
-    let m = &c.model.head.lone_added_mass;
-    let row = |r: usize| {
-        m.get(r)
-            .zip(m.get(r + 3))
-            .zip(m.get(r + 6))
-            .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
-    };
-    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * c.model.head.fluid_density;
-    put_three(out, 0, linear, row(2) * c.model.head.fluid_density);
+    let own = Twist { linear: turn.unturned(v.linear), ..v };
+    let momentum = crate::lone::times(&c.model.head.lone_added_mass, &own);
+    put_three(out, 0, turn.turned(momentum.linear) * density, momentum.angular * density);
 }
