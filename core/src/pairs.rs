@@ -67,16 +67,25 @@ pub(crate) fn pair_pass<R: Real>(
             h: [hx.1, hy.1],
             out: part_mut(second, 0, m),
         };
-        let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
-        machine.run(Mutual { a: &mut a, b: &mut b, place: relative[0].place, z });
-        add_poles(c, &mut a, &mut b);
-        add_poles(c, &mut b, &mut a);
-        for (target, source) in [(&a, &b), (&b, &a)] {
+        let mut end = |target: &Side<'_, '_, R>, source: usize| {
             let rates = part_mut(out.rate, target.record.first, target.record.nodes);
             let mut sums = [Complex::default(); 2];
             machine.run(End { side: target, rates, sums: &mut sums });
-            add_pose_sums(c, target.index, source.index, sums, R::one(), out.gradient);
+            add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
+        };
+        let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
+        let poles = [a.record, b.record].iter().any(|side| !side.table(c.model.store).is_empty());
+        let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
+        machine.run(Mutual { a: &mut a, b: &mut b, place: ab, z, mutual: !poles });
+        add_poles(c, &mut a, &mut b);
+        end(&a, j);
+        if poles {
+            // A pole term cancels against the plain rule: both must be of the same rounded differences.
+            let z = [part_mut(s.zx, 0, m), part_mut(s.zy, 0, m)];
+            machine.run(Mutual { a: &mut b, b: &mut a, place: ba, z, mutual: false });
+            add_poles(c, &mut b, &mut a);
         }
+        end(&b, i);
     }
 }
 
@@ -132,12 +141,14 @@ struct Mutual<'a, 'b, 'c, R> {
     b: &'c mut Side<'a, 'b, R>,
     place: [Complex<R>; 2],
     z: [&'c mut [R]; 2],
+    /// Whether what `a` induces at `b` is wanted too.
+    mutual: bool,
 }
 
 impl<R: Real> Task for Mutual<'_, '_, '_, R> {
     #[inline(always)]
     fn run(self) {
-        let Mutual { a, b, place: [z0, z1], z: [zx, zy] } = self;
+        let Mutual { a, b, place: [z0, z1], z: [zx, zy], mutual } = self;
         let points = a.nodes.x.iter().zip(a.nodes.y);
         for ((zx, zy), (x, y)) in zx.iter_mut().zip(zy.iter_mut()).zip(points) {
             *zx = z0.re + (z1.re * *x - z1.im * *y);
@@ -147,7 +158,7 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
         b.begin();
         let factor = b.factor();
         // In a's frame 1/(Γ − z)² is this times that in b's frame.
-        let turned = z1 * z1 * a.factor();
+        let turned = z1 * z1 * if mutual { a.factor() } else { R::zero() };
         let ([fx, fy], [hx, hy]) = (&a.f, &mut a.h);
         let (x, y, fx, fy) = (zx.as_chunks(), zy.as_chunks(), fx.as_chunks(), fy.as_chunks());
         let (dx, dy, u) = (a.nodes.dx.as_chunks(), a.nodes.dy.as_chunks(), a.density.as_chunks());
