@@ -12,7 +12,7 @@ use crate::boundary::Nodes;
 use crate::configuration::Configuration;
 use crate::configuration::fill_targets;
 use crate::lu::{Machine, Task};
-use crate::nystrom::{LANES, TargetColumns, add_pole_velocity, induced_velocity, induced_velocity_both, lanes, sum_of};
+use crate::nystrom::{LANES, add_pole_velocity, induced_velocity, lanes, sum_of};
 use crate::scalar::{Complex, Real, cabs, complex, dot, perp};
 use crate::se2::Twist;
 use crate::workspace::{copy, part, part_mut};
@@ -80,13 +80,13 @@ fn link_of<R: Real>(c: &Configuration<'_, R>, boundary: usize) -> Option<usize> 
 }
 
 /// Where a target's nodes x (own frame) are in its source's frame, z₀ + z₁ x, and how they move there, v₀ + v₁ x.
-struct Relative<R> {
-    place: [Complex<R>; 2],
-    rate: [Complex<R>; 2],
+pub(crate) struct Relative<R> {
+    pub place: [Complex<R>; 2],
+    pub rate: [Complex<R>; 2],
 }
 
 impl<R: Real> Relative<R> {
-    fn of(c: &Configuration<'_, R>, target: usize, source: usize, rates: &[R]) -> Self {
+    pub(crate) fn of(c: &Configuration<'_, R>, target: usize, source: usize, rates: &[R]) -> Self {
         let (p, q) = (c.pose(target), c.pose(source));
         let (vi, vj) = (boundary_twist(c, rates, target), boundary_twist(c, rates, source));
         let shift = p.origin - q.origin;
@@ -117,41 +117,60 @@ pub(crate) fn add_pose_gradient<R: Real>(
     scale: R,
     gradient: &mut [R],
 ) {
-    let (p, q) = (c.pose(pair.target), c.pose(pair.source));
     let mut sums = [Complex::default(); 2];
-    Machine::here().run(PairSums { weight, nodes: pair.nodes, hx: pair.hx, hy: pair.hy, sums: &mut sums });
+    Machine::here().run(PairSums { weight, nodes: pair.nodes, h: [pair.hx, pair.hy], sums: &mut sums });
+    add_pose_sums(c, pair.target, pair.source, sums, scale, gradient);
+}
+
+/// The same from the sums Σ w h and Σ w h x over the target's nodes x.
+pub(crate) fn add_pose_sums<R: Real>(
+    c: &Configuration<'_, R>,
+    target: usize,
+    source: usize,
+    sums: [Complex<R>; 2],
+    scale: R,
+    gradient: &mut [R],
+) {
+    let (p, q) = (c.pose(target), c.pose(source));
     let [force, moment] = sums.map(|sum| sum * q.turn.conj());
     // Im(i f arm) = Re(f arm); the arm from the source is longer by the distance of the origins.
     let turn_target = (moment * p.turn).re;
     let turn_source = (force * (p.origin - q.origin)).re + turn_target;
     // (Im Σf, Im iΣf) = (Im, Re)
     let linear = complex(force.im, force.re) * scale;
-    add_three(c, pair.target, linear, turn_target * scale, gradient);
-    add_three(c, pair.source, -linear, -turn_source * scale, gradient);
+    add_three(c, target, linear, turn_target * scale, gradient);
+    add_three(c, source, -linear, -turn_source * scale, gradient);
 }
 
-/// Σ w h and Σ w h x over the nodes x of a target.
+/// [`pose_sums`] as a task.
 struct PairSums<'a, 'b, R> {
     weight: &'b [R],
     nodes: Nodes<'a, R>,
-    hx: &'b [R],
-    hy: &'b [R],
+    h: [&'b [R]; 2],
     sums: &'b mut [Complex<R>; 2],
 }
 
 impl<R: Real> Task for PairSums<'_, '_, R> {
     #[inline(always)]
     fn run(self) {
-        let (w, x, y) = (self.weight.as_chunks(), self.nodes.x.as_chunks(), self.nodes.y.as_chunks());
-        let (hx, hy) = (self.hx.as_chunks(), self.hy.as_chunks());
-        let mut sums = [[R::zero(); LANES]; 4];
-        for ((w, (x, y)), (hx, hy)) in w.0.iter().zip(x.0.iter().zip(y.0)).zip(hx.0.iter().zip(hy.0)) {
-            sums = pair_lanes([*w, *x, *y, *hx, *hy], sums);
-        }
-        let rest = [w.1, x.1, y.1, hx.1, hy.1].map(|rest| lanes(rest, R::zero()));
-        let [a, b, c, d] = pair_lanes(rest, sums).map(sum_of);
-        *self.sums = [complex(a, b), complex(c, d)];
+        *self.sums = pose_sums(self.weight, &self.nodes, self.h);
     }
+}
+
+/// Σ w h and Σ w h x over the nodes x of a target.
+#[inline(always)]
+pub(crate) fn pose_sums<R: Real>(weight: &[R], nodes: &Nodes<'_, R>, [hx, hy]: [&[R]; 2]) -> [Complex<R>; 2] {
+    let (w, x, y) = (weight.as_chunks(), nodes.x.as_chunks(), nodes.y.as_chunks());
+    let (hx, hy) = (hx.as_chunks(), hy.as_chunks());
+    let mut sums = [[R::zero(); LANES]; 4];
+    for ((w, (x, y)), (hx, hy)) in w.0.iter().zip(x.0.iter().zip(y.0)).zip(hx.0.iter().zip(hy.0)) {
+        sums = pair_lanes([*w, *x, *y, *hx, *hy], sums);
+    }
+    if !w.1.is_empty() {
+        sums = pair_lanes([w.1, x.1, y.1, hx.1, hy.1].map(|rest| lanes(rest, R::zero())), sums);
+    }
+    let [a, b, c, d] = sums.map(sum_of);
+    [complex(a, b), complex(c, d)]
 }
 
 #[inline(always)]
@@ -172,54 +191,6 @@ fn pair_lanes<R: Real>(
     [a, b, c, d]
 }
 
-/// Places the nodes of a target in its source's frame, with weights times their rates there.
-struct BeginPair<'a, 'b, R> {
-    relative: Relative<R>,
-    nodes: Nodes<'a, R>,
-    weight: &'b [R],
-    columns: [&'b mut [R]; 6],
-}
-
-impl<R: Real> Task for BeginPair<'_, '_, R> {
-    #[inline(always)]
-    fn run(self) {
-        let Relative { place: [z0, z1], rate: [v0, v1] } = self.relative;
-        let [zx, zy, fx, fy, hx, hy] = self.columns;
-        let points = self.nodes.x.iter().zip(self.nodes.y);
-        for ((zx, zy), (x, y)) in zx.iter_mut().zip(zy.iter_mut()).zip(points.clone()) {
-            *zx = z0.re + (z1.re * *x - z1.im * *y);
-            *zy = z0.im + (z1.re * *y + z1.im * *x);
-        }
-        for (((fx, fy), (x, y)), w) in fx.iter_mut().zip(fy.iter_mut()).zip(points).zip(self.weight) {
-            *fx = (v0.re + (v1.re * *x - v1.im * *y)) * *w;
-            *fy = (v0.im + (v1.re * *y + v1.im * *x)) * *w;
-        }
-        hx.fill(R::zero());
-        hy.fill(R::zero());
-    }
-}
-
-/// Adds Im(ż h) at a target's nodes to `out`.
-struct AddRates<'a, 'b, R> {
-    rate: [Complex<R>; 2],
-    nodes: Nodes<'a, R>,
-    hx: &'b [R],
-    hy: &'b [R],
-    out: &'b mut [R],
-}
-
-impl<R: Real> Task for AddRates<'_, '_, R> {
-    #[inline(always)]
-    fn run(self) {
-        let [v0, v1] = self.rate;
-        let h = self.hx.iter().zip(self.hy);
-        for ((out, (x, y)), (hx, hy)) in self.out.iter_mut().zip(self.nodes.x.iter().zip(self.nodes.y)).zip(h) {
-            let (re, im) = (v0.re + (v1.re * *x - v1.im * *y), v0.im + (v1.re * *y + v1.im * *x));
-            *out += re * *hy + im * *hx;
-        }
-    }
-}
-
 /// Adds to a boundary's three reals, if it moves.
 pub(crate) fn add_three<R: Real>(
     c: &Configuration<'_, R>,
@@ -233,58 +204,6 @@ pub(crate) fn add_three<R: Real>(
             *o += x;
         }
     }
-}
-
-/// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
-/// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per pair of nodes.
-pub(crate) fn pair_pass<R: Real>(
-    c: &Configuration<'_, R>,
-    qd: &[R],
-    density: &[R],
-    adjoint: &[R],
-    s: &mut PairScratch<'_, R>,
-    out: PassResult<'_, R>,
-) {
-    out.rate.fill(R::zero());
-    out.transposed.fill(R::zero());
-    out.gradient.fill(R::zero());
-    let machine = Machine::here();
-    for (j, source, source_nodes) in c.each_boundary() {
-        for (i, target, nodes) in c.each_boundary() {
-            if i == j || (source.link.is_none() && target.link.is_none()) {
-                continue;
-            }
-            let n = target.nodes;
-            let weights = part(adjoint, target.first, n);
-            let relative = Relative::of(c, i, j, qd);
-            let rate = relative.rate;
-            let columns = [&mut *s.zx, &mut *s.zy, &mut *s.fx, &mut *s.fy, &mut *s.hx, &mut *s.hy];
-            let [zx, zy, fx, fy, hx, hy] = columns.map(|column| part_mut(column, 0, n));
-            let columns = [&mut *zx, &mut *zy, &mut *fx, &mut *fy, &mut *hx, &mut *hy];
-            machine.run(BeginPair { relative, nodes, weight: weights, columns });
-            let mut columns = TargetColumns { zx, zy, fx, fy, hx: &mut *hx, hy: &mut *hy };
-            let transposed = part_mut(out.transposed, source.first, source.nodes);
-            induced_velocity_both(
-                source,
-                &source_nodes,
-                part(density, source.first, source.nodes),
-                &mut columns,
-                transposed,
-            );
-            let w = part(density, source.first, source.nodes);
-            add_pole_velocity(c, (j, source), target.first, [w, &[]], [fx, fy], [hx, hy], transposed);
-            machine.run(AddRates { rate, nodes, hx, hy, out: part_mut(out.rate, target.first, n) });
-            let pair = Induced { target: i, source: j, first: target.first, len: n, nodes, hx, hy };
-            add_pose_gradient(&pair, c, weights, R::one(), out.gradient);
-        }
-    }
-}
-
-/// What [`pair_pass`] fills: two vectors of length N and three reals per link.
-pub(crate) struct PassResult<'a, R> {
-    pub rate: &'a mut [R],
-    pub transposed: &'a mut [R],
-    pub gradient: &'a mut [R],
 }
 
 /// Completes a force of per-unit-density quantities in world directions, in place:

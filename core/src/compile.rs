@@ -108,10 +108,11 @@ impl<'a, R: Real> Model<'a, R> {
             crate::nystrom::fill_walls(walls, &head, traits.circulation, store);
         }
         if traits.formulation == Formulation::Kirchhoff
-            && let Some(boundary) = memory.boundaries.first()
+            && let (Some(boundary), Some(link)) = (memory.boundaries.first(), memory.links.first())
         {
             (head.lone_added_mass, head.lone_impulse, head.lone_resolution) =
                 crate::lone::constants(boundary, store, scratch, traits.circulation)?;
+            head.lone_inverse = crate::lone::inverse_mass(&head.lone_added_mass, head.fluid_density, link);
         }
         Ok(head)
     }
@@ -199,6 +200,7 @@ fn head<R: Real, S: Description<R>>(
         prescribed_moves,
         lone_added_mass: [R::zero(); 9],
         lone_impulse: [R::zero(); 3],
+        lone_inverse: [R::zero(); 9],
         lone_resolution: [R::zero(); 2],
         plan,
     };

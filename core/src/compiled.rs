@@ -2,12 +2,13 @@
 //! loops for the machine's own vectors.
 #![allow(private_interfaces)] // The trait is sealed by its only implementors.
 
-use crate::christoffel::{PairScratch, PassResult, pair_pass};
+use crate::christoffel::PairScratch;
 use crate::configuration::{Configuration, Poses};
 use crate::grading::Grading;
 use crate::model::Model;
 use crate::near::preimage::{Source, Targets};
 use crate::near::{NearMut, Preimage};
+use crate::pairs::{PassResult, pair_pass};
 use crate::potentials::BoundarySystem;
 use crate::status::Result;
 

@@ -78,6 +78,7 @@ impl<'a, R: Real> Configuration<'a, R> {
         (0..self.model.head.plan.walls).any(|i| self.regraded(i))
     }
 
+    #[inline]
     fn nodes_of(&self, i: usize, b: &'a BoundaryRecord<R>) -> Nodes<'a, R> {
         if self.regraded(i) { self.near.nodes(b) } else { b.nodes(self.model.store) }
     }

@@ -2,7 +2,9 @@
 
 use crate::boundary::{BoundaryRecord, Nodes};
 use crate::configuration::{Poses, targets};
+use crate::lu::{Machine, Task};
 use crate::model::Model;
+use crate::nystrom::{LANES, lanes};
 use crate::scalar::{Complex, Real, cabs, cis, complex, dot, perp};
 use crate::se2::Pose;
 use crate::status::Place;
@@ -59,16 +61,22 @@ impl<R: Real> Placed<'_, R> {
 }
 
 /// Squared distance of z (in the boundary's frame) to its closest node, in eight lanes so that it vectorizes.
+#[inline(always)]
 fn square_to<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>) -> R {
-    let mut lanes = [R::MAX; 8];
-    for (x, y) in nodes.x.chunks(8).zip(nodes.y.chunks(8)) {
-        for ((best, x), y) in lanes.iter_mut().zip(x).zip(y) {
-            let (dx, dy) = (*x - z.re, *y - z.im);
+    let nearer = |mut best: [R; LANES], x: [R; LANES], y: [R; LANES]| {
+        for ((best, x), y) in best.iter_mut().zip(x).zip(y) {
+            let (dx, dy) = (x - z.re, y - z.im);
             let d = dx * dx + dy * dy;
             *best = if d < *best { d } else { *best };
         }
+        best
+    };
+    let ((x, x_rest), (y, y_rest)) = (nodes.x.as_chunks(), nodes.y.as_chunks());
+    let mut best = x.iter().zip(y).fold([R::MAX; LANES], |best, (x, y)| nearer(best, *x, *y));
+    if let (Some(x), Some(y)) = (x_rest.last(), y_rest.last()) {
+        best = nearer(best, lanes(x_rest, *x), lanes(y_rest, *y));
     }
-    lanes.iter().fold(R::MAX, |m, d| if *d < m { *d } else { m })
+    best.iter().fold(R::MAX, |m, d| if *d < m { *d } else { m })
 }
 
 /// The node of which that is the distance.
@@ -143,14 +151,30 @@ pub(crate) fn foot<R: Real>(b: &Placed<'_, R>, store: &[R], x: Complex<R>) -> (R
 
 /// Closest pair of nodes: squared distance and the two nodes. O(N_i N_j).
 fn closest_nodes<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> (R, usize, usize) {
-    let mut best = (R::MAX, 0, 0);
-    for (i, z) in targets(&a.nodes, a.pose, b.pose).enumerate() {
-        let row = square_to(&b.nodes, z);
-        if row < best.0 {
-            best = (row, i, node_at(&b.nodes, z, row));
+    let mut best = (R::MAX, 0);
+    Machine::here().run(Closest { a, b, best: &mut best });
+    let (square, i) = best;
+    let z = targets(&a.nodes, a.pose, b.pose).nth(i).unwrap_or_default();
+    (square, i, node_at(&b.nodes, z, square))
+}
+
+/// Squared distance of the closest pair of nodes, and the node of `a`.
+struct Closest<'a, 'b, R> {
+    a: &'b Placed<'a, R>,
+    b: &'b Placed<'a, R>,
+    best: &'b mut (R, usize),
+}
+
+impl<R: Real> Task for Closest<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        for (i, z) in targets(&self.a.nodes, self.a.pose, self.b.pose).enumerate() {
+            let row = square_to(&self.b.nodes, z);
+            if row < self.best.0 {
+                *self.best = (row, i);
+            }
         }
     }
-    best
 }
 
 /// Signed gap of two boundaries: negative when the closest points show that they overlap. Closest nodes, then
@@ -282,7 +306,7 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
         // A node of `a` is where `a` is: within its reach.
         for (j, b) in all().filter(|(j, b)| *j != i && apart(&a, b) <= R::zero()) {
             let Some(z) = targets(&a.nodes, a.pose, b.pose).next() else { continue };
-            let inside = encloses(&b.nodes, z);
+            let inside = cabs(z) <= b.record.reach && encloses(&b.nodes, z);
             if b.record.sign > R::zero() && !inside {
                 return Some((model.place(i), Place::Tank));
             }

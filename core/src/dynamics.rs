@@ -8,12 +8,13 @@
 //! energy balance is exact at any resolution.
 
 use crate::articulation::{accelerations, project, put_three, twist_of, velocities};
-use crate::christoffel::{PairScratch, PassResult, add_frame_terms, boundary_formula, without_turning};
+use crate::christoffel::{PairScratch, add_frame_terms, boundary_formula, without_turning};
 use crate::configuration::{Configuration, Poses};
 use crate::forces::{buoyancy, circulation, repulsion};
 use crate::indicators::force_scale;
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 use crate::near::Near;
+use crate::pairs::PassResult;
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };

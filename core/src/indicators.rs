@@ -5,12 +5,13 @@
 //! boundary system reproduces the one solution that is known exactly, the constant density: A 1 = 2 on bodies and
 //! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve.
 
-use crate::christoffel::{PairScratch, PassResult};
+use crate::christoffel::PairScratch;
 use crate::configuration::{Configuration, Poses};
 use crate::dynamics::largest_force;
 use crate::lu::Factors;
 use crate::model::Model;
 use crate::near::Near;
+use crate::pairs::PassResult;
 use crate::potentials::{BoundarySystem, add_potential_moments, flux_moments};
 use crate::scalar::Real;
 use crate::sim::{Sim, Watch};

@@ -69,6 +69,7 @@ pub(crate) mod nystrom;
 mod nystrom_test;
 #[cfg(feature = "alloc")]
 pub mod owned;
+pub(crate) mod pairs;
 pub mod plan;
 pub(crate) mod potentials;
 pub mod resolve;

@@ -3,66 +3,82 @@
 
 use crate::articulation::twist_of;
 use crate::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
-use crate::configuration::{Configuration, Poses, put_pose};
+use crate::configuration::put_pose;
 use crate::ldl;
 use crate::lu::{Factors, factor};
-use crate::model::Model;
-use crate::near::Near;
-use crate::scalar::{Complex, Real, cln, complex, dot};
-use crate::se2::Pose;
+use crate::model::{LinkRecord, Model};
+use crate::scalar::{Complex, Real, cis, cln, complex, dot, perp};
+use crate::se2::{Pose, Twist};
 use crate::status::{Result, Status};
-use crate::work::{Counters, Work, configuration, lone_momentum};
-use crate::workspace::{add, at, copy, part, part_mut, put, take};
+use crate::work::{Counters, Work};
+use crate::workspace::{add, at, copy, part_mut, put, take};
 
 impl<R: Real> Work<'_, R> {
-    /// Accelerations of a lone body by Kirchhoff's equations, M (q̈ − J q̇) + J p + f = 0 with p = M q̇: what
-    /// [`Work::evaluate`] gives, which fills every buffer.
+    /// Accelerations of a lone body by Kirchhoff's equations, M (q̈ − J q̇) + J p + f = 0 with p = M q̇, in its own frame, where
+    /// M and its inverse are constant: what [`Work::evaluate`] gives, which fills every buffer.
     pub(crate) fn evaluate_lone(
         &mut self,
         model: &Model<'_, R>,
         p: &[R],
         dp: &[R],
         counters: &mut Counters,
-    ) -> Result<()> {
+    ) -> Result<[R; 3]> {
         counters.evaluations += 1;
-        for (to, from) in [(&mut *self.q, p), (&mut *self.s, p), (&mut *self.qd, dp), (&mut *self.ds, dp)] {
-            copy(to, from);
-        }
-        if !self.q.iter().chain(self.qd.iter()).all(|x| x.is_finite()) {
+        let (&[x, y, heading], &[dx, dy, spin]) = (p, dp) else { return Err(Status::Internal.into()) };
+        if ![x, y, heading, dx, dy, spin].iter().all(|x| x.is_finite()) {
             return Err(Status::NonFiniteState.into());
         }
-        let pose = Pose::new(at(p, 0), at(p, 1), at(p, 2));
-        put_pose(self.poses, 0, &pose);
-        let Some(link) = model.links.first() else { return Err(Status::Internal.into()) };
-        let v = twist_of(dp, 0);
-        let (one, zero) = (R::one(), R::zero());
-        let c = configuration!(self, model);
-        let momentum = |v: [R; 3]| {
-            let mut momentum = [zero; 3];
-            lone_momentum(&c, &v, &mut momentum);
-            momentum
-        };
-        let columns = [[one, zero, zero], [zero, one, zero], [zero, zero, one]].map(momentum);
-        let [px, py, _] = momentum([v.linear.re, v.linear.im, v.angular]);
-        let [fx, fy, torque] = momentum([v.linear.im * v.angular, -v.linear.re * v.angular, zero]);
-        let mut force = [fx - py * v.angular, fy + px * v.angular, torque + v.linear.re * py - v.linear.im * px];
-        if model.head.plan.gravity || model.head.plan.circulation {
+        let (head, turn) = (model.head, cis(heading));
+        if head.lone_inverse.iter().any(|x| !x.is_finite()) {
+            return Err(Status::Singular.into());
+        }
+        let mut outer = Twist::default();
+        if head.plan.gravity || head.plan.circulation {
+            copy(self.qd, dp);
+            put_pose(self.poses, 0, &Pose { origin: complex(x, y), turn });
             self.outer_forces(model);
-            for (f, outer) in force.iter_mut().zip(self.outer.iter()) {
-                *f += *outer;
-            }
+            outer = twist_of(self.outer, 0);
         }
-        for (k, (column, m)) in columns.iter().zip([link.mass, link.mass, link.inertia]).enumerate() {
-            copy(part_mut(self.reduced, 3 * k, 3), column);
-            add(self.reduced, 4 * k, m);
-            put(self.reduced, 9 + k, -at(&force, k));
-        }
-        ldl::factor(part_mut(self.reduced, 0, 9), 3, self.reduced_pivots)?;
-        self.solve_reduced(3);
-        copy(self.dds, part(self.reduced, 9, 3));
-        copy(self.indicators, &[model.head.lone_resolution[0], R::zero()]);
-        if self.dds.iter().all(|x| x.is_finite()) { Ok(()) } else { Err(Status::NonFiniteState.into()) }
+        let linear = turn.conj() * complex(dx, dy);
+        let momentum = times(&head.lone_added_mass, &Twist { linear, angular: spin });
+        let turning = Twist { linear: -perp(linear) * spin, angular: R::zero() };
+        let inertial = times(&head.lone_added_mass, &turning);
+        let force = inertial.linear + perp(momentum.linear) * spin;
+        let torque = inertial.angular + dot(perp(linear), momentum.linear);
+        let force = Twist {
+            linear: -(force * head.fluid_density + turn.conj() * outer.linear),
+            angular: -(torque * head.fluid_density + outer.angular),
+        };
+        let acceleration = times(&head.lone_inverse, &force);
+        let linear = turn * acceleration.linear;
+        copy(self.indicators, &[head.lone_resolution[0], R::zero()]);
+        let found = [linear.re, linear.im, acceleration.angular];
+        if found.iter().all(|x| x.is_finite()) { Ok(found) } else { Err(Status::NonFiniteState.into()) }
     }
+}
+
+/// A symmetric 3 × 3 matrix times a velocity or a force, both in the body's frame.
+#[inline]
+pub(crate) fn times<R: Real>(matrix: &[R; 9], v: &Twist<R>) -> Twist<R> {
+    let &[a, b, c, d, e, f, g, h, i] = matrix;
+    let (x, y, w) = (v.linear.re, v.linear.im, v.angular);
+    Twist { linear: complex(a * x + d * y + g * w, b * x + e * y + h * w), angular: c * x + f * y + i * w }
+}
+
+/// The inverse of the mass matrix of body and fluid in the body's frame; NaN if it is singular.
+pub(crate) fn inverse_mass<R: Real>(added: &[R; 9], density: R, link: &LinkRecord<R>) -> [R; 9] {
+    let (mut mass, mut pivots, mut inverse) = (added.map(|m| m * density), [R::zero(); 3], [R::zero(); 9]);
+    for (k, m) in [link.mass, link.mass, link.inertia].into_iter().enumerate() {
+        add(&mut mass, 4 * k, m);
+    }
+    if ldl::factor(&mut mass, 3, &mut pivots).is_err() {
+        return [R::NAN; 9];
+    }
+    for (k, column) in inverse.as_chunks_mut::<3>().0.iter_mut().enumerate() {
+        put(column, k, R::one());
+        ldl::solve(&mass, 3, &pivots, column);
+    }
+    inverse
 }
 
 /// Reals of scratch for `n` nodes.

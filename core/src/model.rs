@@ -131,6 +131,8 @@ pub struct ModelHead<R> {
     /// Lone body: added mass (without mass) and flux impulse of its circulation, per unit density, body frame.
     pub(crate) lone_added_mass: [R; 9],
     pub(crate) lone_impulse: [R; 3],
+    /// Lone body: inverse of the mass of body and fluid, body frame.
+    pub(crate) lone_inverse: [R; 9],
     /// Lone body: asymmetry of its discrete added mass, and error of the constant density.
     pub(crate) lone_resolution: [R; 2],
     pub(crate) plan: Plan,

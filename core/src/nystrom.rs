@@ -235,91 +235,6 @@ pub(crate) fn induced_velocity<R: Real>(
     }
 }
 
-/// [`induced_velocity`] of a real density together with its transpose: also adds Im Σ_i f_i D_ik to `out_k`, from the same
-/// reciprocals. The sums over targets run in eight lanes so that they vectorize.
-pub(crate) fn induced_velocity_both<R: Real>(
-    source: &BoundaryRecord<R>,
-    nodes: &Nodes<'_, R>,
-    w: &[R],
-    t: &mut TargetColumns<'_, R>,
-    out: &mut [R],
-) {
-    let factor = nodes.step * source.sign / R::PI;
-    Machine::here().run(BothVelocities { nodes, factor, w, t, out });
-}
-
-struct BothVelocities<'a, 'b, R> {
-    nodes: &'a Nodes<'a, R>,
-    factor: R,
-    w: &'a [R],
-    t: &'a mut TargetColumns<'b, R>,
-    out: &'a mut [R],
-}
-
-impl<R: Real> Task for BothVelocities<'_, '_, R> {
-    #[inline(always)]
-    fn run(self) {
-        let t = self.t;
-        for (((g, dg), w), out) in self.nodes.points().zip(self.nodes.tangents()).zip(self.w).zip(self.out) {
-            let weight = dg * self.factor;
-            let c = weight * *w;
-            let mut sums = [[R::zero(); LANES]; 2];
-            let ((hx8, hx), (hy8, hy)) = (t.hx.as_chunks_mut::<LANES>(), t.hy.as_chunks_mut::<LANES>());
-            let ((x8, x), (y8, y)) = (t.zx.as_chunks::<LANES>(), t.zy.as_chunks::<LANES>());
-            let ((fx8, fx), (fy8, fy)) = (t.fx.as_chunks::<LANES>(), t.fy.as_chunks::<LANES>());
-            let targets = x8.iter().zip(y8).zip(fx8.iter().zip(fy8));
-            for ((hx, hy), ((x, y), (fx, fy))) in hx8.iter_mut().zip(hy8).zip(targets) {
-                sums = both_lanes(g, c, [x, y, fx, fy].map(|x| x.as_slice()), [hx, hy], sums);
-            }
-            if !x.is_empty() {
-                sums = both_lanes(g, c, [x, y, fx, fy], [hx, hy], sums);
-            }
-            let [re, mut im] = sums;
-            for (im, re) in im.iter_mut().zip(re) {
-                *im = weight.re * *im + weight.im * re;
-            }
-            *out += sum_of(im);
-        }
-    }
-}
-
-/// At most eight targets; returns the sums. What is missing stands at distance 1 and has no weight. Arrays by value and
-/// short loops, each of which vectorizes.
-#[inline(always)]
-fn both_lanes<R: Real>(
-    g: Complex<R>,
-    c: Complex<R>,
-    [x, y, fx, fy]: [&[R]; 4],
-    [hx, hy]: [&mut [R]; 2],
-    [mut re, mut im]: [[R; LANES]; 2],
-) -> [[R; LANES]; 2] {
-    let (x, y) = (lanes(x, g.re - R::one()), lanes(y, g.im));
-    let (fx, fy) = (lanes(fx, R::zero()), lanes(fy, R::zero()));
-    let (mut vx, mut vy) = (lanes(hx, R::zero()), lanes(hy, R::zero()));
-    let (mut sx, mut sy) = ([R::zero(); LANES], [R::zero(); LANES]);
-    for (((sx, sy), x), y) in sx.iter_mut().zip(&mut sy).zip(x).zip(y) {
-        let (dx, dy) = (g.re - x, g.im - y);
-        let inverse = R::one() / (dx * dx + dy * dy);
-        let (ex, ey) = (dx * inverse, -dy * inverse);
-        (*sx, *sy) = (ex * ex - ey * ey, (ex + ex) * ey);
-    }
-    for ((v, sx), sy) in vx.iter_mut().zip(sx).zip(sy) {
-        *v += c.re * sx - c.im * sy;
-    }
-    for ((v, sx), sy) in vy.iter_mut().zip(sx).zip(sy) {
-        *v += c.re * sy + c.im * sx;
-    }
-    for ((((re, sx), sy), fx), fy) in re.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
-        *re += sx * fx - sy * fy;
-    }
-    for ((((im, sx), sy), fx), fy) in im.iter_mut().zip(sx).zip(sy).zip(fx).zip(fy) {
-        *im += sx * fy + sy * fx;
-    }
-    put_lanes(vx, hx);
-    put_lanes(vy, hy);
-    [re, im]
-}
-
 /// Sum of lanes, by halves.
 #[inline(always)]
 pub(crate) fn sum_of<R: Real>([a, b, c, d, e, f, g, h]: [R; LANES]) -> R {
@@ -338,8 +253,9 @@ pub(crate) fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
     })
 }
 
+/// Writes as many lanes as there is room for.
 #[inline(always)]
-fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
+pub(crate) fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
     match to.first_chunk_mut() {
         Some(to) => *to = lanes,
         None => copy(to, &lanes),
@@ -348,13 +264,3 @@ fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
 
 /// Lanes of the sums over targets.
 pub(crate) const LANES: usize = 8;
-
-/// Columns over the targets of a pair: their nodes z in the source's frame, weights f, and the velocity h that adds up.
-pub(crate) struct TargetColumns<'a, R> {
-    pub zx: &'a [R],
-    pub zy: &'a [R],
-    pub fx: &'a [R],
-    pub fy: &'a [R],
-    pub hx: &'a mut [R],
-    pub hy: &'a mut [R],
-}

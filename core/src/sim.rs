@@ -262,9 +262,9 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let n = model.head.plan.free_coordinates;
         if model.head.plan.formulation == Formulation::Kirchhoff {
             // Nothing to meet, no drive.
-            self.work.evaluate_lone(&model, p, dp, self.counters)?;
-            copy(part_mut(dydt, 0, n), self.work.ds);
-            copy(part_mut(dydt, n, n), self.work.dds);
+            let accelerations = self.work.evaluate_lone(&model, p, dp, self.counters)?;
+            copy(part_mut(dydt, 0, n), dp);
+            copy(part_mut(dydt, n, n), &accelerations);
             return Ok(());
         }
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;

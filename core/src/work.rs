@@ -9,7 +9,8 @@ use crate::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::potentials::{
     BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
-use crate::scalar::{Complex, Real};
+use crate::scalar::Real;
+use crate::se2::Twist;
 use crate::status::{Error, Result, Status};
 use crate::workspace::{at, axpy, buffers, copy, part, part_mut, put};
 
@@ -278,18 +279,23 @@ impl<R: Real> Work<'_, R> {
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
         let mut asymmetry = R::zero();
-        // What does not move adds nothing.
-        let moves = |column: &[R]| {
-            let first = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
-            (first, column.iter().rposition(|x| *x != R::zero()).map_or(0, |last| last + 1 - first))
-        };
+        // What does not move adds nothing: of each column the first row that moves and how many follow.
+        for (column, (first, count)) in
+            self.jacobian.chunks_exact(rows.max(1)).zip(self.drift.iter_mut().zip(self.inertial.iter_mut()))
+        {
+            let begin = column.iter().position(|x| *x != R::zero()).unwrap_or(0);
+            let end = column.iter().rposition(|x| *x != R::zero()).map_or(begin, |last| last + 1);
+            (*first, *count) = (R::count(begin), R::count(end - begin));
+        }
+        let (first, count) = (&*self.drift, &*self.inertial);
+        let moves = |k: usize| (at(first, k).to_f64() as usize, at(count, k).to_f64() as usize);
         let product = |column: &[R], (first, count): (usize, usize), momentum: &[R]| {
             let pairs = part(column, first, count).iter().zip(part(momentum, first, count));
             pairs.fold(R::zero(), |s, (x, y)| s + *x * *y)
         };
         for k in 0..n {
             let (column, momentum) = (part(self.jacobian, k * rows, rows), part(self.momenta, k * rows, rows));
-            let own = moves(column);
+            let own = moves(k);
             copy(self.spare, column);
             for (p, l) in self.spare.as_chunks_mut::<3>().0.iter_mut().zip(model.links) {
                 for (p, m) in p.iter_mut().zip([l.mass, l.mass, l.inertia]) {
@@ -299,10 +305,12 @@ impl<R: Real> Work<'_, R> {
             // The diagonal first: the asymmetry of the others is measured by it.
             for j in (0..=k).rev() {
                 let other = part(self.jacobian, j * rows, rows);
-                let moved = moves(other);
+                let moved = moves(j);
                 let halves =
                     [product(other, moved, momentum), product(column, own, part(self.momenta, j * rows, rows))];
-                let sum = (halves[0] + halves[1]) * R::HALF + product(other, moved, self.spare);
+                let common = own.0 < moved.0 + moved.1 && moved.0 < own.0 + own.1;
+                let bodies = if common { product(other, moved, self.spare) } else { R::zero() };
+                let sum = (halves[0] + halves[1]) * R::HALF + bodies;
                 put(self.reduced, k * n + j, sum);
                 put(self.reduced, j * n + k, sum);
                 if j == k {
@@ -370,16 +378,9 @@ impl<R: Real> Work<'_, R> {
 
 /// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
 pub(crate) fn lone_momentum<R: Real>(c: &Configuration<'_, R>, v: &[R], out: &mut [R]) {
-    let turn = c.pose(0);
+    let (turn, density) = (c.pose(0), c.model.head.fluid_density);
     let v = twist_of(v, 0);
-    let b = turn.unturned(v.linear);
-    let m = &c.model.head.lone_added_mass;
-    let row = |r: usize| {
-        m.get(r)
-            .zip(m.get(r + 3))
-            .zip(m.get(r + 6))
-            .map_or(R::NAN, |((x, y), z)| *x * b.re + *y * b.im + *z * v.angular)
-    };
-    let linear: Complex<R> = turn.turned(crate::scalar::complex(row(0), row(1))) * c.model.head.fluid_density;
-    put_three(out, 0, linear, row(2) * c.model.head.fluid_density);
+    let own = Twist { linear: turn.unturned(v.linear), ..v };
+    let momentum = crate::lone::times(&c.model.head.lone_added_mass, &own);
+    put_three(out, 0, turn.turned(momentum.linear) * density, momentum.angular * density);
 }

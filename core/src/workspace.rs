@@ -63,12 +63,16 @@ pub(crate) fn inner<R: Real>(a: &[R], b: &[R]) -> R {
     let ((a8, a_rest), b8) = (a.as_chunks::<8>(), b.as_chunks::<8>().0);
     let rest = a_rest.iter().zip(part(b, a.len() - a_rest.len(), a_rest.len()));
     let tail = rest.fold(R::zero(), |s, (x, y)| s + *x * *y);
+    if a8.is_empty() {
+        return tail;
+    }
     for (a, b) in a8.iter().zip(b8) {
         for ((s, x), y) in lanes.iter_mut().zip(a).zip(b) {
             *s += *x * *y;
         }
     }
-    lanes.iter().fold(tail, |s, x| s + *x)
+    let [a, b, c, d, e, f, g, h] = lanes;
+    tail + (((a + e) + (c + g)) + ((b + f) + (d + h)))
 }
 
 /// `y += a x`.

@@ -4,6 +4,7 @@
 //! Matrices are column-major with leading dimension `ld`.
 
 use super::{BLOCK, Rows, exchange};
+use crate::nystrom::{lanes, put_lanes};
 use crate::scalar::Real;
 use crate::workspace::{at, part, part_mut, put};
 
@@ -508,18 +509,23 @@ pub(super) fn solve_triangle<R: Real, V: Lanes<R>, const UPPER: bool>(
 #[inline(always)]
 fn triangle<R: Real, V: Lanes<R>, const H: usize, const UPPER: bool>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
     let width = left.len().div_ceil(ld.max(1));
-    let (mut block, mut scale) = ([[R::zero(); BLOCK]; BLOCK], [-R::one(); BLOCK]);
-    for (p, (to, from)) in block.iter_mut().zip(left.chunks(ld.max(1))).enumerate() {
-        let from = part(from, k, width);
-        if UPPER {
-            put(&mut scale, p, -R::one() / at(from, p));
-            crate::workspace::copy(to, part(from, 0, p));
-        } else {
-            crate::workspace::copy(part_mut(to, p + 1, BLOCK - p - 1), part(from, p + 1, width - p - 1));
+    let zero = V::splat(R::zero());
+    let (mut block, mut scale) = ([[zero; H]; BLOCK], [-R::one(); BLOCK]);
+    for (p, (column, scale)) in block.iter_mut().zip(&mut scale).enumerate() {
+        let from = part(left.get(p * ld..).unwrap_or(&[]), k, width);
+        // What belongs to the other triangle, and is finite, is taken 0 times.
+        let mut mask = [R::zero(); BLOCK];
+        for (i, mask) in mask.iter_mut().enumerate() {
+            let kept = if UPPER { i < p } else { i > p };
+            *mask = if kept { -R::one() } else { R::zero() };
+        }
+        *column = scaled(begin::<R, V, H>(from), begin::<R, V, H>(&mask));
+        if UPPER && let Some(pivot) = from.get(p) {
+            *scale = *pivot;
         }
     }
+    let scale = if UPPER { scale.map(|pivot| -R::one() / pivot) } else { scale };
     let scale = begin::<R, V, H>(&scale);
-    let mut block = block.map(|column| begin::<R, V, H>(&column));
     if UPPER {
         for column in &mut block {
             *column = scaled(*column, scale);
@@ -576,66 +582,86 @@ fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V;
     out
 }
 
+/// Rows `k ..` of at most [`BLOCK`] columns, `width` of each; 0 where there are fewer.
+#[inline(always)]
+fn triangle_of<R: Real>(columns: &[R], ld: usize, k: usize, width: usize) -> [[R; BLOCK]; BLOCK] {
+    let column = |p: usize| lanes(part(columns.get(p * ld..).unwrap_or(&[]), k, width), R::zero());
+    [column(0), column(1), column(2), column(3), column(4), column(5), column(6), column(7)]
+}
+
 /// Solves Uᵀ Lᵀ x = b in place with the factors of order `n`: eight scalar products at a time.
 #[inline(always)]
 pub(super) fn solve_transposed<R: Real, V: Lanes<R>>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
     for k in (0..n).step_by(BLOCK) {
-        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let width = (n - k).min(BLOCK);
+        let columns = part(lu, k * ld, width * ld);
         let known = products::<R, V>(columns, ld, 0, part(b, 0, k));
-        let mut x = [R::zero(); BLOCK];
-        crate::workspace::copy(&mut x, part(b, k, width));
-        for (c, (u, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate() {
-            let u = part(u, k, width);
-            let sum = x.iter().zip(u).take(c).fold(known, |s, (x, u)| s + *x * *u);
-            let value = (at(&x, c) - sum) / at(u, c);
-            put(&mut x, c, value);
+        let (u, mut x) = (triangle_of(columns, ld, k, width), lanes(part(b, k, width), R::zero()));
+        let mut inverses = [R::one(); BLOCK];
+        for (p, (inverse, u)) in inverses.iter_mut().zip(&u).enumerate() {
+            *inverse = if p < width { at(u, p) } else { R::one() };
         }
-        crate::workspace::copy(part_mut(b, k, width), &x);
+        let inverses = inverses.map(|pivot| R::one() / pivot);
+        // Of each sum the product that is known last comes last, so that little waits for it.
+        for c in 0..BLOCK {
+            let mut sum = at(&x, c) - at(&known, c);
+            for p in 0..c {
+                sum -= at(&x, p) * u.get(c).map_or(R::NAN, |u| at(u, p));
+            }
+            put(&mut x, c, sum * at(&inverses, c));
+        }
+        put_lanes(x, part_mut(b, k, width));
     }
     for k in (0..n).step_by(BLOCK).rev() {
-        let (columns, width) = (part(lu, k * ld, (n - k).min(BLOCK) * ld), (n - k).min(BLOCK));
+        let width = (n - k).min(BLOCK);
+        let columns = part(lu, k * ld, width * ld);
         let known = products::<R, V>(columns, ld, k + width, part(b, k + width, n - k - width));
-        let mut x = [R::zero(); BLOCK];
-        crate::workspace::copy(&mut x, part(b, k, width));
-        for (c, (l, known)) in columns.chunks_exact(ld.max(1)).zip(known).enumerate().rev() {
-            let l = part(l, k, width);
-            let sum = x.iter().zip(l).skip(c + 1).fold(known, |s, (x, l)| s + *x * *l);
-            let value = at(&x, c) - sum;
-            put(&mut x, c, value);
+        let (l, mut x) = (triangle_of(columns, ld, k, width), lanes(part(b, k, width), R::zero()));
+        for i in 0..BLOCK {
+            let c = BLOCK - 1 - i;
+            let mut sum = at(&x, c) - at(&known, c);
+            for j in 0..i {
+                let p = BLOCK - 1 - j;
+                sum -= at(&x, p) * l.get(c).map_or(R::NAN, |l| at(l, p));
+            }
+            put(&mut x, c, sum);
         }
-        crate::workspace::copy(part_mut(b, k, width), &x);
+        put_lanes(x, part_mut(b, k, width));
     }
 }
 
-/// Scalar products of `y` with the rows from `row` on of at most [`BLOCK`] columns.
+/// Scalar products of `y` with the rows from `row` on of at most [`BLOCK`] columns; anything for missing ones.
 #[inline(always)]
 fn products<R: Real, V: Lanes<R>>(columns: &[R], ld: usize, row: usize, y: &[R]) -> [R; BLOCK] {
-    let mut sides: [&[R]; BLOCK] = [&[]; BLOCK];
-    for (side, column) in sides.iter_mut().zip(columns.chunks_exact(ld.max(1))) {
-        *side = part(column, row, y.len());
+    // The first column takes the place of missing ones.
+    let first = part(columns, row, y.len());
+    let side = |c: usize| match part(columns, c * ld + row, y.len()) {
+        [] => first,
+        side => side,
+    };
+    let [a, b, c, d] = four_products::<R, V>(y, [side(0), side(1), side(2), side(3)]);
+    let [e, f, g, h] = four_products::<R, V>(y, [side(4), side(5), side(6), side(7)]);
+    [a, b, c, d, e, f, g, h]
+}
+
+#[inline(always)]
+fn four_products<R: Real, V: Lanes<R>>(y: &[R], [a, b, c, d]: [&[R]; 4]) -> [R; 4] {
+    let zero = V::splat(R::zero());
+    let (mut p, mut q, mut r, mut s) = (zero, zero, zero, zero);
+    let [mut y, mut a, mut b, mut c, mut d] = [y, a, b, c, d].map(|x| x.chunks_exact(V::WIDTH));
+    for ((((y, a), b), c), d) in y.by_ref().zip(a.by_ref()).zip(b.by_ref()).zip(c.by_ref()).zip(d.by_ref()) {
+        let y = V::begin(y);
+        p = p.minus_product(V::begin(a), y);
+        q = q.minus_product(V::begin(b), y);
+        r = r.minus_product(V::begin(c), y);
+        s = s.minus_product(V::begin(d), y);
     }
-    // Missing columns take the first one's place.
-    let [first, ..] = sides;
-    for side in &mut sides {
-        if side.is_empty() {
-            *side = first;
-        }
+    if !y.remainder().is_empty() {
+        let y = V::begin(y.remainder());
+        p = p.minus_product(V::begin(a.remainder()), y);
+        q = q.minus_product(V::begin(b.remainder()), y);
+        r = r.minus_product(V::begin(c.remainder()), y);
+        s = s.minus_product(V::begin(d.remainder()), y);
     }
-    let mut sums = [V::splat(R::zero()); BLOCK];
-    let whole = y.len() - y.len() % V::WIDTH;
-    let mut done = 0;
-    while done < whole {
-        let Some(y) = y.get(done..).and_then(V::load) else { break };
-        for (sum, side) in sums.iter_mut().zip(&sides) {
-            let Some(side) = side.get(done..).and_then(V::load) else { break };
-            *sum = sum.minus_product(side, y);
-        }
-        done += V::WIDTH;
-    }
-    let mut products = [R::zero(); BLOCK];
-    for ((product, sum), side) in products.iter_mut().zip(sums).zip(&sides) {
-        let rest = part(side, whole, y.len() - whole).iter().zip(part(y, whole, y.len() - whole));
-        *product = rest.fold(-sum.sum(), |s, (x, y)| s + *x * *y);
-    }
-    products
+    [-p.sum(), -q.sum(), -r.sum(), -s.sum()]
 }
