@@ -1,12 +1,13 @@
 //! One pass over all pairs of boundaries: what the density of the motion induces at the other boundaries, and the transpose.
 //!
-//! Both directions of a pair need 1/(Γ − z)² of the same differences, up to the turn between the two frames: a pair is
-//! visited once, with one division per pair of nodes.
+//! Both directions of a pair need 1/(Γ − z)² of the same differences, up to the turn between the two frames: unless there are pole
+//! terms, a pair is visited once, with one division per pair of nodes.
 
 use crate::boundary::{BoundaryRecord, Nodes};
 use crate::christoffel::{PairScratch, Relative, add_pose_sums, pose_sums};
 use crate::configuration::Configuration;
 use crate::lu::{Machine, Task};
+use crate::near::HERE;
 use crate::nystrom::{LANES, add_pole_velocity, lanes, put_lanes, sum_of};
 use crate::scalar::{Complex, Real, complex};
 use crate::workspace::{part, part_mut};
@@ -74,16 +75,19 @@ pub(crate) fn pair_pass<R: Real>(
             add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
         };
         let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
-        let poles = [a.record, b.record].iter().any(|side| !side.table(c.model.store).is_empty());
+        let poles = HERE && [a.record, b.record].iter().any(|side| !side.table(c.model.store).is_empty());
         let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
-        machine.run(Mutual { a: &mut a, b: &mut b, place: ab, z, mutual: !poles });
-        add_poles(c, &mut a, &mut b);
-        end(&a, j);
         if poles {
             // A pole term cancels against the plain rule: both must be of the same rounded differences.
+            machine.run(Pair::<R, false> { a: &mut a, b: &mut b, place: ab, z });
+            add_poles(c, &mut a, &mut b);
+            end(&a, j);
             let z = [part_mut(s.zx, 0, m), part_mut(s.zy, 0, m)];
-            machine.run(Mutual { a: &mut b, b: &mut a, place: ba, z, mutual: false });
+            machine.run(Pair::<R, false> { a: &mut b, b: &mut a, place: ba, z });
             add_poles(c, &mut b, &mut a);
+        } else {
+            machine.run(Pair::<R, true> { a: &mut a, b: &mut b, place: ab, z });
+            end(&a, j);
         }
         end(&b, i);
     }
@@ -135,20 +139,19 @@ fn add_poles<R: Real>(c: &Configuration<'_, R>, target: &mut Side<'_, '_, R>, so
     add_pole_velocity(c, at, target.record.first, [source.density, &[]], [fx, fy], [hx, hy], source.out);
 }
 
-/// The plain rule in both directions, in the frame of `b`, where `a` stands at `place`: nodes z₀ + z₁ x.
-struct Mutual<'a, 'b, 'c, R> {
+/// The plain rule of what `b` induces at `a`, and if `BOTH` of what `a` induces at `b`, in the frame of `b`, where `a` stands at
+/// `place`: nodes z₀ + z₁ x.
+struct Pair<'a, 'b, 'c, R, const BOTH: bool> {
     a: &'c mut Side<'a, 'b, R>,
     b: &'c mut Side<'a, 'b, R>,
     place: [Complex<R>; 2],
     z: [&'c mut [R]; 2],
-    /// Whether what `a` induces at `b` is wanted too.
-    mutual: bool,
 }
 
-impl<R: Real> Task for Mutual<'_, '_, '_, R> {
+impl<R: Real, const BOTH: bool> Task for Pair<'_, '_, '_, R, BOTH> {
     #[inline(always)]
     fn run(self) {
-        let Mutual { a, b, place: [z0, z1], z: [zx, zy], mutual } = self;
+        let Pair { a, b, place: [z0, z1], z: [zx, zy] } = self;
         let points = a.nodes.x.iter().zip(a.nodes.y);
         for ((zx, zy), (x, y)) in zx.iter_mut().zip(zy.iter_mut()).zip(points) {
             *zx = z0.re + (z1.re * *x - z1.im * *y);
@@ -158,7 +161,7 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
         b.begin();
         let factor = b.factor();
         // In a's frame 1/(Γ − z)² is this times that in b's frame.
-        let turned = z1 * z1 * if mutual { a.factor() } else { R::zero() };
+        let turned = z1 * z1 * a.factor();
         let ([fx, fy], [hx, hy]) = (&a.f, &mut a.h);
         let (x, y, fx, fy) = (zx.as_chunks(), zy.as_chunks(), fx.as_chunks(), fy.as_chunks());
         let (dx, dy, u) = (a.nodes.dx.as_chunks(), a.nodes.dy.as_chunks(), a.density.as_chunks());
@@ -174,14 +177,14 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
             let changed = hx.0.iter_mut().zip(hy.0.iter_mut()).zip(out.0.iter_mut());
             for (((hx, hy), out), (((x, y), (fx, fy)), ((dx, dy), u))) in changed.zip(whole.clone()) {
                 let far = [*x, *y, *fx, *fy, *dx, *dy, *u];
-                ([*hx, *hy, *out], total) = both(one, far, [*hx, *hy, *out], total);
+                ([*hx, *hy, *out], total) = lanes_of_pair::<R, BOTH>(one, far, [*hx, *hy, *out], total);
             }
             if !x.1.is_empty() {
                 // What is missing stands at distance 1 and has no weight.
                 let (x, y, zero) = (lanes(x.1, g.re - R::one()), lanes(y.1, g.im), R::zero());
                 let (fx, fy, dx, dy) = (lanes(fx.1, zero), lanes(fy.1, zero), lanes(dx.1, zero), lanes(dy.1, zero));
                 let old = [lanes(hx.1, zero), lanes(hy.1, zero), lanes(out.1, zero)];
-                let (new, sums) = both(one, [x, y, fx, fy, dx, dy, lanes(u.1, zero)], old, total);
+                let (new, sums) = lanes_of_pair::<R, BOTH>(one, [x, y, fx, fy, dx, dy, lanes(u.1, zero)], old, total);
                 put_lanes(new[0], hx.1);
                 put_lanes(new[1], hy.1);
                 put_lanes(new[2], out.1);
@@ -190,8 +193,10 @@ impl<R: Real> Task for Mutual<'_, '_, '_, R> {
             // Through memory: else the sums are carried lane by lane through the loop above.
             let [own, vx, vy] = core::hint::black_box(total);
             *sum += sum_of(own);
-            *bhx = sum_of(vx);
-            *bhy = sum_of(vy);
+            (*bhx, *bhy) = (sum_of(vx), sum_of(vy));
+        }
+        if !BOTH {
+            return;
         }
         let [bhx, bhy] = &mut b.h;
         for (x, y) in bhx.iter_mut().zip(bhy.iter_mut()) {
@@ -212,7 +217,7 @@ struct One<R> {
 /// Eight nodes of `a` (positions, weights, tangents, density) and a node of `b`: velocities and transposed sums at the
 /// eight, and the sums over them. Arrays by value and short loops, each of which vectorizes.
 #[inline(always)]
-fn both<R: Real>(
+fn lanes_of_pair<R: Real, const BOTH: bool>(
     one: One<R>,
     [x, y, fx, fy, dx, dy, u]: [[R; LANES]; 7],
     [mut hx, mut hy, mut out]: [[R; LANES]; 3],
@@ -239,6 +244,9 @@ fn both<R: Real>(
     }
     for ((own, (px, py)), (fx, fy)) in own.iter_mut().zip(px.iter().zip(&py)).zip(fx.iter().zip(&fy)) {
         *own += *px * *fy + *py * *fx;
+    }
+    if !BOTH {
+        return ([hx, hy, out], [own, vx, vy]);
     }
     // The same of the eight nodes of `a`.
     let (mut qx, mut qy) = (sx, sy);
