@@ -33,6 +33,8 @@ pub struct Adams<R> {
     starting: bool,
     /// The last step, signed; 0 after a start.
     last_step: R,
+    /// The longest step since the start.
+    longest: R,
     /// Order of the last step; 0 after a start.
     last_order: usize,
     /// Number of last steps that had the same length.
@@ -87,6 +89,7 @@ impl<R: Real> Adams<R> {
             order: 1,
             starting: true,
             last_step: R::zero(),
+            longest: R::zero(),
             last_order: 0,
             equal_steps: 0,
             spans: [R::zero(); MAX_ORDER],
@@ -110,7 +113,7 @@ impl<R: Real> Adams<R> {
         copy(b.state, y);
         b.rest.fill(R::zero());
         b.rate.fill(R::NAN);
-        (self.dim, self.time, self.time_rest) = (y.len(), t, R::zero());
+        (self.dim, self.time, self.time_rest, self.longest) = (y.len(), t, R::zero(), R::zero());
         self.restart();
         Ok(())
     }
@@ -256,9 +259,10 @@ impl<R: Real> Adams<R> {
         if self.proposed == R::zero() {
             self.proposed = self.first_step(remaining.abs(), b);
         }
-        // Shorter steps would be lost even in the two parts of the time, or (near time 0) are beyond hope.
-        let hopeless = (R::lit(16.0) * self.time.abs()).max(self.proposed.min(remaining.abs()));
-        let shortest = (R::EPSILON * R::EPSILON * hopeless).max(R::TINY);
+        // Shorter steps would be lost even in the two parts of the time, or are beyond hope beside those made before.
+        let lost = (R::lit(16.0) * self.time.abs()).max(self.proposed.min(remaining.abs()));
+        let shortest = R::EPSILON * (R::lit(16.0) * self.longest).max(R::EPSILON * lost);
+        let shortest = shortest.max(R::TINY);
         let mut length = self.proposed.max(shortest);
         let mut failures = 0;
         loop {
@@ -385,6 +389,7 @@ impl<R: Real> Adams<R> {
         self.time = time;
         self.spans = formula.spans;
         (self.last_step, self.last_order) = (formula.step, k);
+        self.longest = self.longest.max(formula.step.abs());
         self.counters.steps += 1;
 
         self.starting &= !estimate.prefers_lower && k < MAX_ORDER;

@@ -142,6 +142,19 @@ fn a_solution_that_becomes_infinite_ends_with_an_error_before() {
 }
 
 #[test]
+fn a_state_that_cannot_be_passed_ends_a_run_soon() {
+    // As at a contact: beyond it there is no rate, and every step towards it is shorter than the one before.
+    let mut system = ode(1, |_: f64, y: &[f64], d: &mut [f64]| {
+        d[0] = 1.0;
+        if y[0] < 30.0 { Ok(()) } else { Err(Status::Contact.into()) }
+    });
+    let (mut adams, mut work) = started(1e-3, 1e-3, 0.0, &[0.0]);
+    let error = run(&mut adams, &mut system, 100.0, &mut work).unwrap_err();
+    assert!(matches!(error.status, Status::Contact | Status::StepTooSmall), "{error}");
+    assert!(adams.counters().evaluations < 300, "{:?}", adams.counters());
+}
+
+#[test]
 fn runs_repeat_bit_for_bit() {
     let run = || {
         let (mut adams, mut work) = started(1e-9, 1e-9, 0.0, &pericentre(0.6));
