@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use nekton::scalar::Real;
 use nekton::scene::{Description, ForceFormula, Quadrature, Scene};
-use nekton::status::{Error, Place};
+use nekton::status::{Error, Place, Status};
 use nekton::{Formulation, ModelBuf, Plan, SimBuf};
 
 use super::setting::{Setting, Variant, counts, method, scaled, unit};
@@ -200,6 +200,7 @@ fn run<R: Real>(
         sim.set_state(R::zero(), &y)?;
     }
     let wide = |x: &[R]| -> Vec<f64> { x.iter().map(|x| x.to_f64()).collect() };
+    sim.set_step_limit(1000)?;
     let mut path = vec![wide(sim.positions())];
     let mut ended = Ended::Done;
     let clock = Instant::now();
@@ -208,8 +209,15 @@ fn run<R: Real>(
     let looks = if plan.formulation == Formulation::Velocity { looks(setting, until) } else { 1 };
     for k in 1..=OUTPUTS * looks {
         let t = R::lit(until * k as f64 / (OUTPUTS * looks) as f64);
-        if let Err(error) = sim.advance_dense(t, R::lit(until)) {
-            ended = Ended::Failed(error);
+        // A run that crawls is to be noticed before it has made a million steps.
+        let reached = loop {
+            match sim.advance_dense(t, R::lit(until)) {
+                Err(error) if error.status == Status::TooManySteps && clock.elapsed() <= limit => {}
+                reached => break reached,
+            }
+        };
+        if let Err(error) = reached {
+            ended = if error.status == Status::TooManySteps { Ended::Limit } else { Ended::Failed(error) };
             break;
         }
         if k % looks == 0 {
