@@ -244,11 +244,13 @@ fn nearest<R: Real>(nodes: &[R], w: &Pairs<R>) -> [usize; LANES] {
         }
     }
     let (first, last) = (at(nodes, 0), at(nodes, nodes.len().saturating_sub(1)));
-    core::array::from_fn(|i| {
+    let mut found = [0; LANES];
+    for i in 0..LANES {
         let after = after[i].to_f64() as usize;
         let before = nodes.get(after.wrapping_sub(1)).copied().unwrap_or(last - R::TAU);
         let next = nodes.get(after).copied().unwrap_or(first + R::TAU);
         let k = if t[i] - before < next - t[i] { after + nodes.len() - 1 } else { after };
-        if k >= nodes.len() { k - nodes.len() } else { k }
-    })
+        found[i] = if k >= nodes.len() { k - nodes.len() } else { k };
+    }
+    found
 }
