@@ -101,7 +101,7 @@ pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &
 }
 
 /// Fades ladders of tips and their feet where a closest point already asks for as much: mostly it lies at the tip itself.
-pub(crate) fn thin<R: Real>(list: &mut [R]) {
+fn thin<R: Real>(list: &mut [R]) {
     let count = crate::near::ladder_count(list);
     let (closest, half) = (R::lit(TOP), R::HALF);
     for i in 0..count {
