@@ -46,28 +46,9 @@ pub(crate) fn pair_pass<R: Real>(
         let columns = [&mut *s.fx, &mut *s.fy, &mut *s.hx, &mut *s.hy];
         let [fx, fy, hx, hy] =
             columns.map(|x| part_mut(x, 0, n + m).split_at_mut_checked(n).unwrap_or((&mut [], &mut [])));
-        let mut a = Side {
-            index: i,
-            record: a,
-            nodes: a_nodes,
-            rate: ra,
-            density: part(density, a.first, n),
-            weight: part(adjoint, a.first, n),
-            f: [fx.0, fy.0],
-            h: [hx.0, hy.0],
-            out: part_mut(first, a.first, n),
-        };
-        let mut b = Side {
-            index: j,
-            record: b,
-            nodes: b_nodes,
-            rate: rb,
-            density: part(density, b.first, m),
-            weight: part(adjoint, b.first, m),
-            f: [fx.1, fy.1],
-            h: [hx.1, hy.1],
-            out: part_mut(second, 0, m),
-        };
+        let mut a =
+            Side::of((i, a, a_nodes), ra, [density, adjoint], [fx.0, fy.0, hx.0, hy.0], part_mut(first, a.first, n));
+        let mut b = Side::of((j, b, b_nodes), rb, [density, adjoint], [fx.1, fy.1, hx.1, hy.1], part_mut(second, 0, m));
         let mut end = |target: &Side<'_, '_, R>, source: usize| {
             let rates = part_mut(out.rate, target.record.first, target.record.nodes);
             let mut sums = [Complex::default(); 2];
@@ -75,7 +56,7 @@ pub(crate) fn pair_pass<R: Real>(
             add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
         };
         let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
-        let poles = HERE && [a.record, b.record].iter().any(|side| !side.table(c.model.store).is_empty());
+        let poles = HERE && (has_poles(c, &a, j) || has_poles(c, &b, i));
         let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
         if poles {
             // A pole term cancels against the plain rule: both must be of the same rounded differences.
@@ -111,7 +92,19 @@ struct Side<'a, 'b, R> {
     out: &'b mut [R],
 }
 
-impl<R: Real> Side<'_, '_, R> {
+impl<'a, 'b, R: Real> Side<'a, 'b, R> {
+    /// `whole`: density and adjoint of all boundaries; `scratch`: f and h.
+    fn of(
+        (index, record, nodes): (usize, &'a BoundaryRecord<R>, Nodes<'a, R>),
+        rate: [Complex<R>; 2],
+        whole: [&'b [R]; 2],
+        [fx, fy, hx, hy]: [&'b mut [R]; 4],
+        out: &'b mut [R],
+    ) -> Self {
+        let [density, weight] = whole.map(|x| part(x, record.first, record.nodes));
+        Side { index, record, nodes, rate, density, weight, f: [fx, fy], h: [hx, hy], out }
+    }
+
     #[inline(always)]
     fn factor(&self) -> R {
         self.nodes.step * self.record.sign / R::PI
@@ -130,6 +123,12 @@ impl<R: Real> Side<'_, '_, R> {
             h.fill(R::zero());
         }
     }
+}
+
+/// Whether anything that `source` induces at a node of `target` needs a pole term.
+fn has_poles<R: Real>(c: &Configuration<'_, R>, target: &Side<'_, '_, R>, source: usize) -> bool {
+    let (first, count) = (target.record.first, target.record.nodes);
+    (first..first + count).any(|row| c.preimages(source, row).next().is_some())
 }
 
 /// Pole terms of what `source` induces at `target`.

@@ -2,15 +2,17 @@
 //! number share one model. Nothing is allocated.
 
 use crate::configuration::Poses;
-use crate::contact::{first_misplaced, swept_contact};
+use crate::contact::first_misplaced;
 use crate::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
-use crate::model::{Control, CoordinateRecord, Formulation, Model, ModelHead};
+use crate::model::{Control, Formulation, Model, ModelHead};
+use crate::motion::{Motion, motion, split_state};
 use crate::scalar::Real;
 use crate::signal::CHANNEL_LEN;
 use crate::status::{Error, Place, Result, Status};
+use crate::time_error::TimeError;
 use crate::work::{Counters, Dims, Work};
-use crate::workspace::{at, buffers, copy, part, part_mut, put};
+use crate::workspace::{at, buffers, copy, put};
 
 /// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
 pub const STEP_LIMIT: u64 = 1_000_000;
@@ -43,74 +45,6 @@ pub enum Method<R> {
         /// Step, s.
         step: R,
     },
-}
-
-/// Estimated local errors of time integration (see [`Sim::time_error`]): each the largest over the free coordinates of its
-/// kind, 0 if there are none. Lengths are the x and y of bodies and what sliders slide, angles the headings of bodies and hinges.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub struct TimeError<R> {
-    /// Of lengths in the last step that could be estimated, m; NaN if there was none.
-    pub length: R,
-    /// Of angles, rad; NaN as above.
-    pub angle: R,
-    /// Of the rates of lengths, m/s; NaN as above; 0 for a lone swimmer, whose rates are not integrated.
-    pub speed: R,
-    /// Of the rates of angles, rad/s; NaN and 0 as above.
-    pub spin: R,
-    /// Sum over all steps that could be estimated, m.
-    pub length_sum: R,
-    /// The same of angles, rad.
-    pub angle_sum: R,
-    /// Of the rates of lengths, m/s.
-    pub speed_sum: R,
-    /// Of the rates of angles, rad/s.
-    pub spin_sum: R,
-    /// Number of steps that could not be estimated, and are missing in the sums.
-    pub unknown: u64,
-}
-
-impl<R: Real> Default for TimeError<R> {
-    fn default() -> Self {
-        let (nan, zero) = (R::NAN, R::zero());
-        TimeError {
-            length: nan,
-            angle: nan,
-            speed: nan,
-            spin: nan,
-            length_sum: zero,
-            angle_sum: zero,
-            speed_sum: zero,
-            spin_sum: zero,
-            unknown: 0,
-        }
-    }
-}
-
-impl<R: Real> TimeError<R> {
-    /// Adds a step whose state has the free coordinates of a model, then (if it has) their rates.
-    fn add(&mut self, error: Option<&[R]>, model: &Model<'_, R>) {
-        let Some(error) = error else {
-            self.unknown += 1;
-            return;
-        };
-        let n = model.head.plan.free_coordinates;
-        let rates = model.head.plan.formulation != Formulation::LockedMomentum;
-        let zero = R::zero();
-        (self.length, self.angle, self.speed, self.spin) = (zero, zero, zero, zero);
-        for c in model.coordinates.iter().filter(|c| c.control != Control::Prescribed) {
-            let own = at(error, c.free).abs();
-            let rate = if rates { at(error, n + c.free).abs() } else { zero };
-            if model.is_angle(c) {
-                (self.angle, self.spin) = (self.angle.max(own), self.spin.max(rate));
-            } else {
-                (self.length, self.speed) = (self.length.max(own), self.speed.max(rate));
-            }
-        }
-        self.length_sum += self.length;
-        self.angle_sum += self.angle;
-        self.speed_sum += self.speed;
-        self.spin_sum += self.spin;
-    }
 }
 
 /// Length of a simulation's memory.
@@ -226,104 +160,6 @@ pub struct Sim<'a, R> {
     pub(crate) state: State<'a, R>,
     pub(crate) work: Work<'a, R>,
 }
-
-/// The equations of motion as an integrator sees them.
-pub(crate) struct Motion<'s, 'a, R> {
-    pub(crate) model: Model<'a, R>,
-    pub(crate) work: &'s mut Work<'a, R>,
-    pub(crate) impulse: [R; 3],
-    /// Placements at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
-    /// then no body may lie inside another.
-    pub(crate) anchor: Option<&'s [R]>,
-    pub(crate) counters: &'s mut Counters,
-}
-
-impl<R: Real> Motion<'_, '_, R> {
-    /// Splits a state into free coordinates and their rates (none for a lone swimmer: they follow from the impulse).
-    fn parts<'y>(&self, y: &'y [R]) -> (&'y [R], &'y [R]) {
-        split_state(&self.model, y)
-    }
-}
-
-pub(crate) fn split_state<'y, R: Real>(model: &Model<'_, R>, y: &'y [R]) -> (&'y [R], &'y [R]) {
-    let n = model.head.plan.free_coordinates;
-    let rates = if model.head.plan.formulation == Formulation::LockedMomentum { &[] } else { part(y, n, n) };
-    (part(y, 0, n), rates)
-}
-
-impl<R: Real> System<R> for Motion<'_, '_, R> {
-    fn dim(&self) -> usize {
-        self.model.head.plan.state_len
-    }
-
-    fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()> {
-        let model = self.model;
-        let (p, dp) = self.parts(y);
-        let n = model.head.plan.free_coordinates;
-        if model.head.plan.formulation == Formulation::Kirchhoff {
-            // Nothing to meet, no drive.
-            let accelerations = self.work.evaluate_lone(&model, p, dp, self.counters)?;
-            copy(part_mut(dydt, 0, n), dp);
-            copy(part_mut(dydt, n, n), &accelerations);
-            return Ok(());
-        }
-        let locked = model.head.plan.formulation == Formulation::LockedMomentum;
-        let zero = [R::zero(); 3];
-        let dp = if locked { &zero } else { dp };
-        self.work.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
-        let poses = Poses(self.work.poses);
-        let contact = match self.anchor {
-            Some(anchor) => swept_contact(&model, anchor, poses, self.work.q),
-            None => first_misplaced(&model, poses),
-        };
-        if let Some((a, b)) = contact {
-            return Err(Error::new(Status::Contact).at(a).with(b));
-        }
-        for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
-            put(dydt, c.free, at(self.work.ds, i));
-            if !locked {
-                put(dydt, n + c.free, at(self.work.dds, i));
-            }
-        }
-        if model.head.tracks_work {
-            let power = self.work.power(&model, t);
-            if let Some(last) = dydt.last_mut() {
-                *last = power;
-            }
-        }
-        Ok(())
-    }
-
-    /// The reach of the link that a coordinate moves, or a radian; for a rate that it covers within the step.
-    fn scale(&self, unknown: usize, h: R) -> Option<R> {
-        let (n, model) = (self.model.head.plan.free_coordinates, &self.model);
-        let rates = model.head.plan.formulation != Formulation::LockedMomentum;
-        let (free, time) = match unknown.checked_sub(n) {
-            Some(rate) if rates => (rate, h.abs()),
-            _ => (unknown, R::one()),
-        };
-        let own = |c: &&CoordinateRecord<R>| c.control != Control::Prescribed && c.free == free;
-        // The work of the drives acts on nothing.
-        let Some(c) = model.coordinates.iter().find(own) else { return Some(R::MAX) };
-        let reach = || model.boundaries.get(model.head.plan.walls + c.link).map_or(R::one(), |b| b.reach);
-        Some(if model.is_angle(c) { R::one() } else { reach() } / time)
-    }
-}
-
-/// Borrows a `Sim`'s parts as the equations of motion.
-macro_rules! motion {
-    ($sim:expr) => {
-        Motion {
-            model: $sim.model,
-            work: &mut $sim.work,
-            impulse: $sim.head.impulse,
-            anchor: Some(&*$sim.state.anchor),
-            counters: &mut $sim.head.counters,
-        }
-    };
-}
-
-pub(crate) use motion;
 
 impl<'a, R: Real> Sim<'a, R> {
     /// Memory needed for a simulation of a model.
@@ -597,14 +433,5 @@ impl<'a, R: Real> Sim<'a, R> {
         for ((u, du), (k, _)) in u.iter_mut().zip(du.iter_mut()).zip(joints) {
             (*u, *du) = (at(self.state.joints, 2 * k), at(self.state.joints, 2 * k + 1));
         }
-    }
-}
-impl<R: Real> Work<'_, R> {
-    /// Total linear impulse and angular impulse about the origin of the motion (p, ṗ), from scratch.
-    pub(crate) fn impulse_of_motion(&mut self, model: &Model<'_, R>, p: &[R], dp: &[R]) -> Result<[R; 3]> {
-        let mut counters = Counters::default();
-        self.place(model, R::zero(), p, dp)?;
-        self.prepare_motion(model, &mut counters)?;
-        Ok(self.total_impulse(model))
     }
 }

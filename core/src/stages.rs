@@ -5,7 +5,8 @@ use crate::near::Near;
 use crate::nystrom::assemble;
 use crate::potentials::BoundarySystem;
 use crate::scalar::Real;
-use crate::sim::{Sim, split_state};
+use crate::motion::split_state;
+use crate::sim::Sim;
 use crate::status::Result;
 use crate::work::{configuration, system};
 

@@ -76,7 +76,7 @@ pub struct Motion<R> {
 /// Steps of a complete table.
 const STEPS: u64 = 1_000_000;
 /// Seconds that a run may take: it does not go on to the next power of ten if that will take longer.
-const LIMIT: f64 = 600.0;
+const LIMIT: f64 = 1800.0;
 
 /// The motions of the table.
 pub fn motions<R: Real>() -> [Motion<R>; 4] {

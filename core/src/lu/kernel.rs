@@ -1,4 +1,4 @@
-//! The dispatch point: which instructions of the machine at hand the loops of [`super::tile`] are compiled for.
+//! The dispatch point: which instructions of the machine at hand the loops beside it are compiled for.
 //!
 //! The only module of this crate with `unsafe`, for two things:
 //! * Calls of functions compiled for instructions that not every machine has. A value of [`Avx2`] or [`Avx512`] is the
@@ -11,6 +11,8 @@ use super::Rows;
 use super::portable::{Portable, divide};
 #[cfg(target_arch = "x86_64")]
 use super::tile::{self, Lanes};
+#[cfg(target_arch = "x86_64")]
+use super::{eliminate, triangle};
 use crate::scalar::Real;
 
 /// The loops that are worth instructions of their own.
@@ -172,7 +174,7 @@ mod x86 {
                         k: usize,
                         pivots: &mut [R],
                     ) -> Option<(R, R)> {
-                        tile::eliminate_block::<R, R::$vector>(block, ld, n, k, pivots)
+                        eliminate::eliminate_block::<R, R::$vector>(block, ld, n, k, pivots)
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(block, ld, n, k, pivots) }
@@ -181,7 +183,7 @@ mod x86 {
                 fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
-                        tile::divide::<R, R::$vector>(block, ld, rows);
+                        eliminate::divide::<R, R::$vector>(block, ld, rows);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(block, ld, rows) }
@@ -190,7 +192,7 @@ mod x86 {
                 fn solve_lower(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-                        tile::solve_triangle::<R, R::$vector, false>(left, ld, k, right);
+                        triangle::solve_triangle::<R, R::$vector, false>(left, ld, k, right);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(left, ld, k, right) }
@@ -199,7 +201,7 @@ mod x86 {
                 fn solve_upper(self, left: &[R], ld: usize, k: usize, right: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(left: &[R], ld: usize, k: usize, right: &mut [R]) {
-                        tile::solve_triangle::<R, R::$vector, true>(left, ld, k, right);
+                        triangle::solve_triangle::<R, R::$vector, true>(left, ld, k, right);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(left, ld, k, right) }
@@ -208,7 +210,7 @@ mod x86 {
                 fn solve_transposed(self, lu: &[R], ld: usize, n: usize, b: &mut [R]) {
                     #[target_feature(enable = $features)]
                     fn compiled<R: Real>(lu: &[R], ld: usize, n: usize, b: &mut [R]) {
-                        tile::solve_transposed::<R, R::$vector>(lu, ld, n, b);
+                        triangle::solve_transposed::<R, R::$vector>(lu, ld, n, b);
                     }
                     // SAFETY: `self` proves that the machine has these instructions.
                     unsafe { compiled(lu, ld, n, b) }

@@ -3,13 +3,18 @@
 //! Column-major storage with leading dimension `ld`; an odd multiple of a cache line keeps columns from falling on the same
 //! lines. Right-hand sides appended behind the matrix ride along with the elimination. The elimination is recursive
 //! (Toledo 1997): it halves the columns down to blocks of eight, so that nearly all work is products of large blocks, which
-//! one register tile does, compiled for what the machine at hand offers (module `kernel` chooses; `tile`, `portable`).
+//! one register tile does, compiled for what the machine at hand offers (module `kernel` chooses: `tile`, `eliminate` and
+//! `triangle`, or `portable`).
 //! Cost: 2n³/3 for [`factor`], 2n² for each solve.
 
+#[cfg(target_arch = "x86_64")]
+mod eliminate;
 mod kernel;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod tile;
+#[cfg(target_arch = "x86_64")]
+mod triangle;
 
 use crate::scalar::Real;
 use crate::status::{Result, Status};

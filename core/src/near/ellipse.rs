@@ -42,7 +42,6 @@ struct OnEllipse<'a, 'b, R, F> {
 struct Pending<R> {
     count: usize,
     row: [usize; LANES],
-    node: [usize; LANES],
     z: Pairs<R>,
     w: Pairs<R>,
 }
@@ -51,23 +50,22 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
     #[inline(always)]
     fn run(mut self) {
         let zero = [[R::zero(); LANES]; 2];
-        let mut pending = Pending { count: 0, row: [0; LANES], node: [0; LANES], z: zero, w: zero };
+        let mut pending = Pending { count: 0, row: [0; LANES], z: zero, w: zero };
         let n = self.targets.nodes.x.len();
         for first in (0..n).step_by(LANES) {
             let z = self.points(first);
             let roots = self.roots(first, &z);
-            let nodes = [nearest(self.source.nodes.t, &roots[0]), nearest(self.source.nodes.t, &roots[1])];
             let heights = [self.heights(&roots[0]), self.heights(&roots[1])];
             for i in 0..LANES {
                 if first + i >= n {
                     break;
                 }
-                for ((w, node), height) in roots.iter().zip(&nodes).zip(&heights) {
+                for (w, height) in roots.iter().zip(&heights) {
                     if height[i] > self.most {
                         continue;
                     }
                     let w = complex(w[0][i], w[1][i]);
-                    pending.push(first + i, node[i], complex(z[0][i], z[1][i]), w);
+                    pending.push(first + i, complex(z[0][i], z[1][i]), w);
                     if pending.count == LANES {
                         self.complete(&pending);
                         pending.count = 0;
@@ -84,13 +82,12 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
 impl<R: Real> Pending<R> {
     /// The first one fills all lanes, so that none holds garbage.
     #[inline(always)]
-    fn push(&mut self, row: usize, node: usize, z: Complex<R>, w: Complex<R>) {
+    fn push(&mut self, row: usize, z: Complex<R>, w: Complex<R>) {
         if self.count == 0 {
-            self.node = [node; LANES];
             (self.z, self.w) = ([[z.re; LANES], [z.im; LANES]], [[w.re; LANES], [w.im; LANES]]);
         }
-        if let (Some(r), Some(n)) = (self.row.get_mut(self.count), self.node.get_mut(self.count)) {
-            (*r, *n) = (row, node);
+        if let Some(r) = self.row.get_mut(self.count) {
+            *r = row;
         }
         let ([x, y], [u, v]) = (&mut self.z, &mut self.w);
         for (lanes, value) in [(x, z.re), (y, z.im), (u, w.re), (v, w.im)] {
@@ -174,12 +171,12 @@ impl<R: Real, F: FnMut(usize, Preimage<R>)> OnEllipse<'_, '_, R, F> {
         let zero = [[R::zero(); LANES]; 2];
         let mut d = zero;
         let mut roots = Roots {
-            node: pending.node,
+            node: nearest(nodes.t, &pending.w),
             offset: Offset { t: [R::zero(); LANES], u: zero, sin: zero, cos: zero },
             tangent: zero,
         };
         for i in 0..LANES {
-            let j = pending.node[i];
+            let j = roots.node[i];
             roots.offset.t[i] = at(nodes.t, j);
             (d[0][i], d[1][i]) = (pending.z[0][i] - at(nodes.x, j), pending.z[1][i] - at(nodes.y, j));
         }
