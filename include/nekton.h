@@ -68,7 +68,7 @@ enum {
     NEKTON_E_SINGULAR = -15,
     /** the motion became infinite or undefined */
     NEKTON_E_NON_FINITE_STATE = -16,
-    /** the tolerance asked for cannot be met: the step became too small */
+    /** the step is too small for the tolerance asked for or for the digits of the time */
     NEKTON_E_STEP_TOO_SMALL = -17,
     /** more steps were needed than allowed */
     NEKTON_E_TOO_MANY_STEPS = -18,

@@ -76,6 +76,10 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         Ok(())
     }
 
+    fn clocked(&self) -> bool {
+        self.model.coordinates.iter().any(|c| c.control != Control::Free && !c.constant)
+    }
+
     /// The reach of the link that a coordinate moves, or a radian; for a rate that it covers within the step.
     fn scale(&self, unknown: usize, h: R) -> Option<R> {
         let (n, model) = (self.model.head.plan.free_coordinates, &self.model);

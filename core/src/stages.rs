@@ -1,11 +1,11 @@
 //! Parts of an evaluation by themselves, for benchmarks (feature `bench`). Each does again what the last evaluation did.
 
 use crate::configuration::{Configuration, Poses};
+use crate::motion::split_state;
 use crate::near::Near;
 use crate::nystrom::assemble;
 use crate::potentials::BoundarySystem;
 use crate::scalar::Real;
-use crate::motion::split_state;
 use crate::sim::Sim;
 use crate::status::Result;
 use crate::work::{configuration, system};

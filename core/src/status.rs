@@ -56,7 +56,7 @@ statuses! {
     Contact = -14, "two bodies came into contact";
     Singular = -15, "a matrix is singular to working precision";
     NonFiniteState = -16, "the motion became infinite or undefined";
-    StepTooSmall = -17, "the tolerance asked for cannot be met: the step became too small";
+    StepTooSmall = -17, "the step is too small for the tolerance asked for or for the digits of the time";
     TooManySteps = -18, "more steps were needed than allowed";
     BadStep = -19, "the step must be positive and finite";
     BadTolerance = -20, "a tolerance must be positive and not below rounding";

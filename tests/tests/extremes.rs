@@ -127,6 +127,44 @@ fn gauss6_settles_or_does_not_in_every_unit_of_length_alike() {
     all::<f32>();
 }
 
+/// How ten steps end that begin at time `t`, of two links that a spring or (`driven`) a signal bends, and what the clock shows.
+fn late<R: nekton::Real>(t: f64, driven: bool, method: Method<R>) -> (&'static str, f64) {
+    let r = |x: f64| R::lit(x);
+    let one = link(Shape::Ellipse { a: r(1.0), b: r(0.375) }, r(1.0), 12);
+    let beat = [Harmonic { amplitude: r(0.3), frequency: r(1.0), phase: r(0.0), offset: r(0.0) }];
+    let drive = if driven {
+        Drive::Motion(Signal::Harmonic { terms: &beat, window: None })
+    } else {
+        let torque = Signal::Constant(r(0.0));
+        Drive::Torque { torque, stiffness: r(4.0), damping: r(0.0), rest: r(0.0), start: [r(0.2), r(0.0)] }
+    };
+    let links = [one, hinged(one, 0, [r(-1.25), r(0.0)], [r(1.25), r(0.0)], drive)];
+    let bodies = [body(&links, [r(0.0); 3], [r(0.0); 3])];
+    let scene = Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(r(1.0), r(0.0)) };
+    let mut sim = simulation(&scene, method);
+    let mut sim = sim.view();
+    let state = sim.state().to_vec();
+    sim.set_state(r(t), &state).expect("accepted");
+    let ended = (0..10).try_for_each(|_| sim.step());
+    (ended.map_or_else(|e| e.status.name(), |()| "Ok"), sim.time().to_f64())
+}
+
+#[test]
+fn a_time_with_too_few_digits_for_the_drives_is_refused_and_harmless_without() {
+    fn both<R: nekton::Real>(fine: f64, coarse: f64) {
+        let r = |x: f64| R::lit(x);
+        let tolerance = nekton_tests::adams::<R>(1e-5);
+        let fixed = [Method::Rk4 { step: r(0.02) }, Method::Abm4 { step: r(0.02) }, Method::Gauss6 { step: r(0.02) }];
+        for method in fixed.into_iter().chain([tolerance]) {
+            assert_eq!(late(fine, true, method).0, "Ok", "{method:?}");
+            assert_eq!(late(coarse, true, method), ("StepTooSmall", r(coarse).to_f64()), "{method:?}");
+            assert_eq!(late(coarse, false, method).0, "Ok", "{method:?}");
+        }
+    }
+    both::<f32>(1e3, 1e6);
+    both::<f64>(1e11, 1e15);
+}
+
 #[test]
 fn many_bodies_are_as_accurate_as_few() {
     for n in [1, 6] {

@@ -259,9 +259,11 @@ impl<R: Real> Adams<R> {
         if self.proposed == R::zero() {
             self.proposed = self.first_step(remaining.abs(), b);
         }
-        // Shorter steps would be lost even in the two parts of the time, or are beyond hope beside those made before.
+        // Shorter steps would be lost even in the two parts of the time (where time counts, in the first), or are beyond hope
+        // beside those made before.
         let lost = (R::lit(16.0) * self.time.abs()).max(self.proposed.min(remaining.abs()));
-        let shortest = R::EPSILON * (R::lit(16.0) * self.longest).max(R::EPSILON * lost);
+        let clock = if system.clocked() { self.time.abs() } else { R::zero() };
+        let shortest = R::EPSILON * ((R::lit(16.0) * self.longest).max(clock)).max(R::EPSILON * lost);
         let shortest = shortest.max(R::TINY);
         let mut length = self.proposed.max(shortest);
         let mut failures = 0;

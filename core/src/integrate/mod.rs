@@ -46,6 +46,11 @@ pub trait System<R> {
     fn scale(&self, _unknown: usize, _h: R) -> Option<R> {
         None
     }
+
+    /// Whether the rate depends on `t` other than through the state. Then no step may be too short for the digits of `t`.
+    fn clocked(&self) -> bool {
+        false
+    }
 }
 
 /// What an integrator has done since it was made.
@@ -85,12 +90,15 @@ fn finite<R: Real>(x: R, what: &'static str) -> Result<()> {
     all_finite(&[x], Status::NotFinite, what)
 }
 
-/// Refuses what no fixed step can be made of: a time, step or state that is not finite, a step that does
-/// not move the time, a state of the wrong length.
+/// Refuses what no fixed step can be made of: a time, step or state that is not finite, no step at all or, where time
+/// counts, one that is lost in its digits, a state of the wrong length.
 fn check_step<R: Real, S: System<R> + ?Sized>(system: &S, t: R, h: R, y: &[R]) -> Result<()> {
     finite(t, "time")?;
     if !h.is_finite() || h == R::zero() {
         return Err(Error::new(Status::BadStep).of("step", h.to_f64()));
+    }
+    if system.clocked() && t + h == t {
+        return Err(Error::new(Status::StepTooSmall).of("time", t.to_f64()));
     }
     same_length(system.dim(), y.len())?;
     all_finite(y, Status::NonFiniteState, "state")
