@@ -36,6 +36,8 @@ enum {
     NEKTON_N_OUTLINE_REVERSED = 1,
     /** the tolerance asked for in space is not met */
     NEKTON_N_UNRESOLVED = 2,
+    /** the step is too long for the motion: its error is a tenth of a body or more */
+    NEKTON_N_STEP_TOO_LONG = 3,
     /** the memory given is smaller than required */
     NEKTON_E_MEMORY_TOO_SMALL = -1,
     /** a value is not finite */
@@ -1142,22 +1144,27 @@ nekton_status nekton_sim_set_state(struct nekton_sim *sim,
 nekton_status nekton_sim_restart(struct nekton_sim *sim);
 
 /**
- * One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
- * a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
+ * One step of the method (ADAMS: one step of its own choice). Returns a notice (> 0): STEP_TOO_LONG if the estimated error
+ * of the step is a tenth of a body's reach, or of a radian, or more (see nekton_sim_time_error; GAUSS6 has no estimate);
+ * UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
+ * when, and what is closest.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
  * simulation is then as it was, bit for bit. One thread per simulation.
  */
-nekton_status nekton_sim_step(struct nekton_sim *sim, struct nekton_diag *diag);
+nekton_status nekton_sim_step(struct nekton_sim *sim,
+                              struct nekton_diag *diag);
 
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
- * the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton_sim_step,
- * with the largest bound met.
+ * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton_sim_step,
+ * with the largest error met.
  * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
  * nekton_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
  */
-nekton_status nekton_sim_advance(struct nekton_sim *sim, double t_end, struct nekton_diag *diag);
+nekton_status nekton_sim_advance(struct nekton_sim *sim,
+                                 double t_end,
+                                 struct nekton_diag *diag);
 
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance
@@ -1542,17 +1549,20 @@ nekton_status nekton32_sim_set_state(struct nekton32_sim *sim,
 nekton_status nekton32_sim_restart(struct nekton32_sim *sim);
 
 /**
- * One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
- * a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
+ * One step of the method (ADAMS: one step of its own choice). Returns a notice (> 0): STEP_TOO_LONG if the estimated error
+ * of the step is a tenth of a body's reach, or of a radian, or more (see nekton32_sim_time_error; GAUSS6 has no estimate);
+ * UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
+ * when, and what is closest.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
  * simulation is then as it was, bit for bit. One thread per simulation.
  */
-nekton_status nekton32_sim_step(struct nekton32_sim *sim, struct nekton_diag *diag);
+nekton_status nekton32_sim_step(struct nekton32_sim *sim,
+                                struct nekton_diag *diag);
 
 /**
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
- * the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton32_sim_step,
- * with the largest bound met.
+ * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton32_sim_step,
+ * with the largest error met.
  * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
  * nekton32_sim_set_step_limit). The simulation is then
  * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.

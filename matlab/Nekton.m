@@ -297,6 +297,7 @@ classdef Nekton < handle
         function r = indicators(self)
         %INDICATORS  The same of the steps, the largest since the call before the last step or advance: they come at almost no
         %   cost. If the scene's run.tolerance is exceeded, step and advance warn (nekton:sim:Unresolved), once until it is met again.
+        %   So they do when the estimated error of a fixed step is a tenth of a body or more (nekton:sim:StepTooLong).
             r = nekton_mex('indicators', self.id);
         end
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use nekton::status::{Error, Place};
+use nekton::status::{Error, Place, Status};
 
 use crate::output::{Target, tables};
 use crate::plots;
@@ -211,14 +211,14 @@ fn keep(record: &mut Record, (row, between): (Row, String)) {
     record.rows.push(row);
 }
 
-/// A time during which the error in space exceeds what is asked.
+/// A time during which steps are too long, or the error in space exceeds what is asked.
 struct Episode {
     from: f64,
     worst: (f64, Error),
     gap: f64,
 }
 
-/// Follows what a simulation has to say about its error in space: one notice for each episode.
+/// Follows what a simulation has to say about its errors: one notice for each episode.
 #[derive(Default)]
 struct Watch {
     episode: Option<Episode>,
@@ -228,6 +228,9 @@ impl Watch {
     /// After a row.
     fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
         let Some((time, notice)) = sim.notice() else { return self.end(setup, sim.time(), record) };
+        if self.episode.as_ref().is_some_and(|e| e.worst.1.status != notice.status) {
+            self.end(setup, time, record);
+        }
         let gap = sim.gap().distance;
         let episode = self.episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
         if notice.value > episode.worst.1.value {
@@ -240,10 +243,11 @@ impl Watch {
         let Some(Episode { from, worst: (time, notice), gap }) = self.episode.take() else { return };
         let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
         let text = setup.scene.describe(&notice);
-        let asked = record.tolerance;
-        record
-            .notices
-            .push(format!("t = {from:.6} to {to:.6} s: {text}, asked {asked:.1e}; worst at t = {time:.6} s{gap}"));
+        let asked = match notice.status {
+            Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
+            _ => String::new(),
+        };
+        record.notices.push(format!("t = {from:.6} to {to:.6} s: {text}{asked}; worst at t = {time:.6} s{gap}"));
     }
 }
 

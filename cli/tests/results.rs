@@ -372,6 +372,24 @@ fn a_tolerance_in_space_that_is_missed_is_one_notice_on_the_terminal_and_in_the_
 }
 
 #[test]
+fn steps_too_long_for_the_motion_are_one_notice() {
+    // A disc that circles once a second.
+    let scene = |step: f64| {
+        format!(
+            "[fluid]\ndensity = 1.0\n[[body]]\nname = \"disc\"\nvelocity = [1.0, 0.0]\n[[body.link]]\nname = \"disc\"\n\
+             shape = {{ ellipse = [1.0, 1.0] }}\ndensity = 1.0\ncirculation = 39.5\n[run]\nduration = 8.0\n\
+             output_interval = {step}\nintegrator = {{ method = \"rk4\", step = {step} }}\n"
+        )
+    };
+    let done = Place::new(&scene(0.5)).run();
+    assert_eq!(done.code, Some(0), "a notice is no error: {}", done.err);
+    let notices: Vec<&str> = done.out.lines().filter(|l| l.contains("notice")).collect();
+    assert_eq!(notices.len(), 1, "one episode: {}", done.out);
+    assert!(notices[0].contains("to 8.000000 s: the step is too long for the motion"), "{}", notices[0]);
+    assert!(!Place::new(&scene(0.05)).run().out.contains("notice"));
+}
+
+#[test]
 fn automatic_nodes_are_shown_by_the_plan() {
     let place = Place::new(&changed("nodes = 32", "nodes = \"auto\""));
     let plan = place.nekton(&["plan", "scene.toml"]);

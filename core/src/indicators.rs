@@ -19,6 +19,10 @@ use crate::status::{Error, Result, Status};
 use crate::work::{Work, configuration, scratch, system};
 use crate::workspace::{at, axpy, inner, part, part_mut};
 
+/// Estimated error of one step (of positions, and of velocities over another step), in reaches of a link or in radians, from which
+/// on steps are too long.
+pub const COARSE: f64 = 0.1;
+
 /// Relative error indicators of the space discretization. They do not see an error of the shape itself.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Resolution<R> {
@@ -106,10 +110,17 @@ impl<R: Real> Sim<'_, R> {
         Ok(self.head.worst)
     }
 
-    /// The notice that the scene's tolerance in space was not met in the last call of [`Sim::step`] or [`Sim::advance`]
-    /// (before the first step: at the state shown), and when it was missed most: the bound of the error and the boundaries
-    /// that are now closest to each other. `None` if it was met, or if none was asked for.
+    /// What is to be noticed of the last call of [`Sim::step`] or [`Sim::advance`], and when it was worst; `None` if there is
+    /// nothing.
+    /// * `StepTooLong`: the estimated error of a step was [`COARSE`] or more reaches of a link, or radians; the motion is no longer
+    ///   that of the scene. (`gauss6` has no estimate: its stages are not found then.)
+    /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
+    ///   error and the boundaries that are now closest to each other. Never if none was asked for.
     pub fn notice(&mut self) -> Option<(R, Error)> {
+        if self.head.watch != Watch::Nothing && self.head.coarsest >= R::lit(COARSE) {
+            let notice = Error::new(Status::StepTooLong).of("error", self.head.coarsest.to_f64());
+            return Some((self.head.coarsest_time, notice));
+        }
         let asked = self.model.head.tolerance;
         if asked == R::zero() {
             return None;

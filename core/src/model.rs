@@ -186,6 +186,10 @@ impl<'a, R: Real> Model<'a, R> {
         let slides = || self.links.get(c.link).is_some_and(|l| matches!(l.hold, Hold::Slider { .. }));
         c.component == 2 || (c.component == 3 && !slides())
     }
+    /// Reach of the link that a coordinate moves.
+    pub(crate) fn reach_of(&self, c: &CoordinateRecord<R>) -> R {
+        self.boundaries.get(self.head.plan.walls + c.link).map_or(R::one(), |b| b.reach)
+    }
     /// Number of links of all bodies.
     pub fn link_count(&self) -> usize {
         self.links.len()

@@ -91,8 +91,7 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let own = |c: &&CoordinateRecord<R>| c.control != Control::Prescribed && c.free == free;
         // The work of the drives acts on nothing.
         let Some(c) = model.coordinates.iter().find(own) else { return Some(R::MAX) };
-        let reach = || model.boundaries.get(model.head.plan.walls + c.link).map_or(R::one(), |b| b.reach);
-        Some(if model.is_angle(c) { R::one() } else { reach() } / time)
+        Some(if model.is_angle(c) { R::one() } else { model.reach_of(c) } / time)
     }
 }
 

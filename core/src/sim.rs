@@ -85,6 +85,9 @@ pub struct SimHead<R> {
     /// Largest error indicators over the steps of one call, and when the larger one was met.
     pub(crate) worst: Resolution<R>,
     pub(crate) worst_time: R,
+    /// Largest estimated error of a step of that call (see [`TimeError::add`]), and when it was made.
+    pub(crate) coarsest: R,
+    pub(crate) coarsest_time: R,
     /// What `worst` belongs to.
     pub(crate) watch: Watch,
     /// The buffers hold an evaluation of the state shown.
@@ -211,6 +214,8 @@ impl<'a, R: Real> Sim<'a, R> {
             counters: Counters::default(),
             worst: Resolution::default(),
             worst_time: R::zero(),
+            coarsest: R::zero(),
+            coarsest_time: R::zero(),
             watch: Watch::Nothing,
             fresh: false,
             started: false,
@@ -331,7 +336,7 @@ impl<'a, R: Real> Sim<'a, R> {
     }
 
     /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
-    pub(crate) fn note_error(&mut self, estimated: bool) {
+    pub(crate) fn note_error(&mut self, estimated: bool, t: R, h: R) {
         let (n, memory) = (self.state.y.len(), &*self.state.integrator);
         let error = match self.head.method {
             _ if !estimated => None,
@@ -340,7 +345,10 @@ impl<'a, R: Real> Sim<'a, R> {
             Method::Adams { .. } => self.head.adams.error(memory),
             Method::Gauss6 { .. } => None,
         };
-        self.head.time_error.add(error, &self.model);
+        let relative = self.head.time_error.add(error, h, &self.model);
+        if relative > self.head.coarsest {
+            (self.head.coarsest, self.head.coarsest_time) = (relative, t);
+        }
     }
 
     /// The integrated state: free coordinates, their rates (not for a lone swimmer, whose rates follow from its

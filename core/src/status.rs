@@ -40,6 +40,7 @@ statuses! {
     Ok = 0, "ok";
     OutlineReversed = 1, "the outline runs clockwise and was turned round";
     Unresolved = 2, "the tolerance asked for in space is not met";
+    StepTooLong = 3, "the step is too long for the motion: its error is a tenth of a body or more";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";

@@ -118,6 +118,7 @@ impl<R: Real> Sim<'_, R> {
         let here = self.work.resolution(&model);
         if self.head.watch != Watch::Present {
             (self.head.worst, self.head.worst_time) = (Resolution::default(), t);
+            self.head.coarsest = R::zero();
             self.head.watch = Watch::Present;
         }
         let worst = self.head.worst;
@@ -157,7 +158,7 @@ impl<R: Real> Sim<'_, R> {
         }
         self.watch(next);
         self.head.counters.steps += 1;
-        self.note_error(regular);
+        self.note_error(regular, next, h);
         if regular {
             self.head.step_count += 1;
         } else {
@@ -190,7 +191,7 @@ impl<R: Real> Sim<'_, R> {
         self.head.adams = adams;
         outcome?;
         self.watch(adams.time());
-        self.note_error(true);
+        self.note_error(true, adams.time(), adams.last_step());
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
         place_only(&self.model, &mut self.work, self.head.adams.time(), p);

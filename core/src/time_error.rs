@@ -46,28 +46,34 @@ impl<R: Real> Default for TimeError<R> {
 }
 
 impl<R: Real> TimeError<R> {
-    /// Adds a step whose state has the free coordinates of a model, then (if it has) their rates.
-    pub(crate) fn add(&mut self, error: Option<&[R]>, model: &Model<'_, R>) {
+    /// Adds a step of length `h` whose state has the free coordinates of a model, then (if it has) their rates. Returns the largest
+    /// error of a coordinate, with that of its rate over another step, in reaches of the link that it moves or in radians; 0 if the
+    /// step could not be estimated.
+    pub(crate) fn add(&mut self, error: Option<&[R]>, h: R, model: &Model<'_, R>) -> R {
         let Some(error) = error else {
             self.unknown += 1;
-            return;
+            return R::zero();
         };
         let n = model.head.plan.free_coordinates;
         let rates = model.head.plan.formulation != Formulation::LockedMomentum;
         let zero = R::zero();
+        let mut relative = zero;
         (self.length, self.angle, self.speed, self.spin) = (zero, zero, zero, zero);
         for c in model.coordinates.iter().filter(|c| c.control != Control::Prescribed) {
             let own = at(error, c.free).abs();
             let rate = if rates { at(error, n + c.free).abs() } else { zero };
             if model.is_angle(c) {
                 (self.angle, self.spin) = (self.angle.max(own), self.spin.max(rate));
+                relative = relative.max(own + rate * h.abs());
             } else {
                 (self.length, self.speed) = (self.length.max(own), self.speed.max(rate));
+                relative = relative.max((own + rate * h.abs()) / model.reach_of(c));
             }
         }
         self.length_sum += self.length;
         self.angle_sum += self.angle;
         self.speed_sum += self.speed;
         self.spin_sum += self.spin;
+        relative
     }
 }

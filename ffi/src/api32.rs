@@ -303,8 +303,10 @@ pub unsafe extern "C" fn nekton32_sim_restart(sim: *mut SimHandle<f32>) -> nekto
     unsafe { report(null_mut(), sim::restart(sim)) }
 }
 
-/// One step of the method (ADAMS: one step of its own choice). Returns the notice UNRESOLVED (> 0) if the scene asks for
-/// a tolerance in space and the step exceeded it; diag tells the bound of the error, when, and what is closest.
+/// One step of the method (ADAMS: one step of its own choice). Returns a notice (> 0): STEP_TOO_LONG if the estimated error
+/// of the step is a tenth of a body's reach, or of a radian, or more (see nekton32_sim_time_error; GAUSS6 has no estimate);
+/// UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
+/// when, and what is closest.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
 /// simulation is then as it was, bit for bit. One thread per simulation.
 #[unsafe(no_mangle)]
@@ -314,8 +316,8 @@ pub unsafe extern "C" fn nekton32_sim_step(sim: *mut SimHandle<f32>, diag: *mut 
 }
 
 /// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
-/// the step function of a controller: set channels, advance by a sample time, read the state. Notice as nekton32_sim_step,
-/// with the largest bound met.
+/// the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton32_sim_step,
+/// with the largest error met.
 /// Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
 /// nekton32_sim_set_step_limit). The simulation is then
 /// as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.

@@ -213,7 +213,7 @@ pub fn drift_table(old: &str, only: [Option<&str>; 3], part_done: &mut dyn FnMut
 /// What one step length comes to on the circling disc.
 #[derive(Clone, Copy, Debug)]
 pub struct StepOutcome {
-    /// Name of the status with which it ended.
+    /// Name of the status with which it ended, or of what was noticed on the way.
     pub status: &'static str,
     /// Steps made.
     pub steps: u64,
@@ -234,6 +234,9 @@ pub fn circle<R: Real>(method: Method<R>, step: f64, steps: u64) -> StepOutcome 
         if let Err(e) = sim.step() {
             status = e.status.name();
             break;
+        }
+        if let Some((_, notice)) = sim.notice() {
+            status = notice.status.name();
         }
         if k % (steps / 10).max(1) == 0 {
             let q: Vec<f64> = sim.positions().iter().map(|x| x.to_f64()).collect();

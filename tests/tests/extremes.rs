@@ -205,7 +205,15 @@ fn steps_of_every_length_are_right_or_known_to_be_wrong() {
                     "adams" => assert_eq!(o.status, "Ok"),
                     "gauss6" if o.status == "Ok" => assert!(o.error <= 2.0 * share.powi(6) + rounding, "{o:?}"),
                     "gauss6" => assert!(o.status == "NoConvergence" && share >= 0.3, "{o:?}"),
-                    _ => assert!(o.status == "Ok" && o.error <= 3.0 * o.estimate + rounding, "{name} {share:e}: {o:?}"),
+                    _ => {
+                        assert!(o.error <= 3.0 * o.estimate + rounding, "{name} {share:e}: {o:?}");
+                        // Where the error grows to the size of the disc the status says so.
+                        assert!(
+                            o.status == "StepTooLong" || (o.status == "Ok" && o.error < 0.3),
+                            "{name} {share:e}: {o:?}"
+                        );
+                        assert!(o.status == "Ok" || o.error > 0.1, "{name} {share:e}: {o:?}");
+                    }
                 }
             }
         }

@@ -14,7 +14,7 @@ use crate::near::{LADDER_LIST, MOST_LADDERS};
 use crate::scalar::{Complex, Real, cabs};
 use crate::workspace::{at, part, part_mut, put};
 
-/// Scale at which a ladder at a closest point has faded out.
+/// Scale at which a ladder at a closest point has faded out: its own, by which these ladders are known.
 const TOP: f64 = 2.0;
 /// Size of a ladder at a tip or its foot, in units of c.
 const TIP: f64 = 1.25;
@@ -103,19 +103,19 @@ pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &
 /// Fades ladders of tips and their feet where a closest point already asks for as much: mostly it lies at the tip itself.
 fn thin<R: Real>(list: &mut [R]) {
     let count = crate::near::ladder_count(list);
-    let (closest, half) = (R::lit(TOP), R::HALF);
+    let at_closest_point = |top: R| top == R::lit(TOP);
     for i in 0..count {
         let &[t, beta, top] = part(list, 2 + 3 * i, 3) else { continue };
-        if top == closest {
+        if at_closest_point(top) {
             continue;
         }
         let mut cover = R::zero();
         for &[t2, beta2, top2] in part(list, 2, 3 * count).as_chunks::<3>().0 {
-            if top2 == closest {
+            if at_closest_point(top2) {
                 // At this distance the other one resolves that much, as far as it has not faded itself.
                 let finest = beta2.max(wrapped(t - t2).abs() * R::lit(3.0));
                 let strength = R::one().min((top2 / beta2).ln());
-                cover = cover.max((R::lit(1.5) - finest / beta) / half * strength);
+                cover = cover.max((R::lit(1.5) - finest / beta) / R::HALF * strength);
             }
         }
         put(list, 2 + 3 * i + 2, beta * (top / beta).powf(R::one() - cover.min(R::one())));

@@ -1,4 +1,4 @@
-//! One scene described twice: for C and for Rust.
+//! Scenes as C describes them, one of them for Rust too, and what every test needs.
 
 #![allow(dead_code, unused_imports)]
 
@@ -212,3 +212,49 @@ precision!(
     nekton32_sim_gap = sim_gap,
     nekton32_sim_counters = sim_counters
 );
+
+/// What C sees through a pointer while a test changes it.
+pub struct Shared<T>(*mut T);
+
+impl<T> Shared<T> {
+    fn new(value: &mut T) -> Self {
+        Shared(value)
+    }
+    pub fn get(&self) -> *const T {
+        self.0
+    }
+}
+
+impl<T> std::ops::Deref for Shared<T> {
+    type Target = T;
+    fn deref(&self) -> &T {
+        unsafe { &*self.0 }
+    }
+}
+
+impl<T> std::ops::DerefMut for Shared<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        unsafe { &mut *self.0 }
+    }
+}
+
+pub type Def = Shared<SceneDef<f64>>;
+pub type Bodies = Shared<[BodyDef<f64>; 2]>;
+pub type Links = Shared<[LinkDef<f64>; 3]>;
+
+/// Calls `check` with a definition of two ellipses, one with a hinged tail, that it may spoil.
+pub fn with_scene(check: impl FnOnce(&mut Def, &mut Bodies, &mut Links)) {
+    let mut links = [double::ellipse(0.5, 0.2), double::ellipse(0.5, 0.2), double::ellipse(0.4, 0.3)];
+    let mut bodies = [double::body(), double::body()];
+    let mut def = double::scene();
+    let (mut def, mut bodies, mut links) = (Shared::new(&mut def), Shared::new(&mut bodies), Shared::new(&mut links));
+    (links[1].parent, links[1].parent_anchor, links[1].self_anchor) = (0, [-0.7, 0.0], [0.7, 0.0]);
+    links[1].drive = NEKTON_DRIVE_TORQUE;
+    bodies[1].pose = [3.0, 0.0, 0.5];
+    let first = links.get().cast::<LinkDef<f64>>();
+    (bodies[0].links, bodies[0].link_count) = (first, 2);
+    (bodies[1].links, bodies[1].link_count) = (first.wrapping_add(2), 1);
+    def.gravity = 9.81;
+    (def.bodies, def.body_count) = (bodies.get().cast(), 2);
+    check(&mut def, &mut bodies, &mut links);
+}

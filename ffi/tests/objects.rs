@@ -1,0 +1,327 @@
+//! Objects that were accepted: what a failed call leaves of them, copies, threads, memory, notices and texts.
+
+mod common;
+
+use common::double::*;
+use common::{empty_diag, memory, with_scene};
+use nekton::Status;
+use nekton_ffi::types::*;
+use std::ptr::{null, null_mut};
+
+#[test]
+fn simulations_of_one_model_on_threads_give_the_bits_of_one_alone() {
+    with_scene(|def, _, _| {
+        let (_model_memory, model) = compile(def);
+        let run = |model: *mut ModelHandle<f64>| {
+            let (_memory, sim) = simulate(model, &adams());
+            assert_eq!(unsafe { sim_advance(sim, 0.2, null_mut()) }, 0);
+            state(model, sim)
+        };
+        let alone = run(model);
+        let address = model.expose_provenance();
+        std::thread::scope(|scope| {
+            let threads: Vec<_> =
+                (0..4).map(|_| scope.spawn(move || run(std::ptr::with_exposed_provenance_mut(address)))).collect();
+            for thread in threads {
+                assert_eq!(thread.join().unwrap(), alone);
+            }
+        });
+    });
+}
+
+#[test]
+fn memory_is_used_exactly_as_far_as_required_and_anywhere() {
+    with_scene(|def, _, _| {
+        let (mut need, mut model, mut sim) = (nekton_req::default(), null_mut(), null_mut());
+        let mut states = Vec::new();
+        for offset in [0, 8, 24, 56] {
+            assert_eq!(unsafe { model_req(def.get(), &mut need, null_mut()) }, 0);
+            let (size, mark) = (need.size, 0x5a);
+            let mut mem = memory(size + 128);
+            let first = mem.as_mut_ptr().cast::<u8>().wrapping_add(offset);
+            assert_eq!(unsafe { model_init(first.cast(), size, def.get(), &mut model, null_mut()) }, 0);
+            assert_eq!(unsafe { sim_req(model, &adams(), &mut need, null_mut()) }, 0);
+            let mut sim_mem = memory(need.size + 128);
+            let sim_first = sim_mem.as_mut_ptr().cast::<u8>().wrapping_add(offset);
+            assert_eq!(unsafe { sim_init(sim_first.cast(), need.size, model, &adams(), &mut sim, null_mut()) }, 0);
+            assert_eq!(unsafe { sim_advance(sim, 0.05, null_mut()) }, 0);
+            states.push(state(model, sim));
+            let outside = |first: *const u8, size: usize, end: usize| {
+                (0..end)
+                    .filter(|i| *i < offset || *i >= offset + size)
+                    .all(|i| unsafe { *first.wrapping_sub(offset).wrapping_add(i) } == mark)
+            };
+            assert!(outside(first, size, size.div_ceil(8) * 8 + 120));
+            assert!(outside(sim_first, need.size, need.size.div_ceil(8) * 8 + 120));
+        }
+        assert!(states.windows(2).all(|w| w[0] == w[1]));
+    });
+}
+
+#[test]
+fn outlines_that_were_turned_round_are_a_notice() {
+    with_scene(|def, bodies, _| {
+        const CLOCKWISE: [[f64; 2]; 3] = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];
+        let mut triangle = link();
+        (triangle.shape.kind, triangle.shape.points, triangle.shape.point_count) =
+            (NEKTON_SHAPE_POLYGON, CLOCKWISE.as_ptr(), 3);
+        bodies[1].links = &raw const triangle;
+        let mut diag = empty_diag();
+        let (mut model, mut status) = (null_mut(), 0);
+        assert_eq!(unsafe { model_create(def.get(), &mut model, &mut diag) }, Status::OutlineReversed.code());
+        assert_eq!((diag.place.kind, diag.place.index), (NEKTON_PLACE_LINK, 1));
+        assert_eq!(plan(model).notices, 1);
+        let mut place = diag.other;
+        assert_eq!(unsafe { model_notice(model, 0, &mut place, &mut status) }, 0);
+        assert_eq!((place, status), (diag.place, Status::OutlineReversed.code()));
+        assert_eq!(unsafe { model_notice(model, 1, &mut place, &mut status) }, Status::OutOfRange.code());
+        assert_eq!(unsafe { model_free(model) }, 0);
+    });
+}
+
+#[test]
+fn steps_that_exceed_the_tolerance_in_space_return_a_notice() {
+    // Two discs side by side: a mirror image of itself, where asymmetry shows nothing.
+    let mut link = ellipse(1.0, 1.0);
+    link.nodes = 32;
+    let mut bodies = [body(), body()];
+    for (b, x) in [(0, 0.0), (1, 2.2)] {
+        (bodies[b].pose, bodies[b].velocity) = ([x, 0.0, 0.0], [0.0, 0.1, 0.0]);
+        (bodies[b].links, bodies[b].link_count) = (&link, 1);
+    }
+    for (tolerance, expected) in [(0.0, 0), (9.0, 0), (1e-9, Status::Unresolved.code())] {
+        let mut def = scene();
+        (def.bodies, def.body_count, def.tolerance) = (bodies.as_ptr(), 2, tolerance);
+        def.quadrature = NEKTON_QUADRATURE_PLAIN;
+        let (mut model, mut sim, mut diag) = (null_mut(), null_mut(), empty_diag());
+        unsafe {
+            assert_eq!(model_create(&def, &mut model, &mut diag), 0);
+            assert_eq!(plan(model).tolerance, tolerance);
+            assert_eq!(sim_create(model, &adams(), &mut sim, &mut diag), 0);
+            for k in 1..=3 {
+                assert_eq!(sim_advance(sim, 0.1 * f64::from(k), &mut diag), expected);
+            }
+            assert_eq!(sim_step(sim, &mut diag), expected);
+            if expected > 0 {
+                assert_eq!((diag.place.index, diag.other.index, diag.item), (0, 1, -1));
+                assert!(diag.value > 1e-9 && diag.time >= 0.3, "{} {}", diag.value, diag.time);
+                assert_eq!(diag.what[..6].iter().map(|c| *c as u8).collect::<Vec<_>>(), b"error\0");
+            }
+            assert_eq!((sim_free(sim), model_free(model)), (0, 0));
+        }
+    }
+}
+
+#[test]
+fn steps_too_long_for_the_motion_return_a_notice() {
+    // A disc that circles once a second.
+    let mut link = ellipse(1.0, 1.0);
+    link.circulation = 39.5;
+    let mut disc = body();
+    (disc.velocity, disc.links, disc.link_count) = ([1.0, 0.0, 0.0], &link, 1);
+    let mut def = scene();
+    (def.bodies, def.body_count) = (&disc, 1);
+    let (_model_memory, model) = compile(&def);
+    for (step, too_long) in [(0.01, false), (0.5, true)] {
+        let (_memory, sim) = simulate(model, &MethodDef { step, ..fixed(NEKTON_METHOD_RK4) });
+        let mut diag = empty_diag();
+        let status = unsafe { sim_advance(sim, 20.0 * step, &mut diag) };
+        assert_eq!(status, if too_long { Status::StepTooLong.code() } else { 0 });
+        if too_long {
+            assert!(diag.value >= 0.1 && diag.time > 6.0 * step && diag.time <= 20.0 * step, "{diag:?}");
+            assert_eq!(common::what(&diag), "error");
+        }
+        // It is over with the call.
+        unsafe {
+            assert_eq!(sim_restart(sim), 0);
+            assert_eq!(sim_step(sim, &mut diag), 0);
+        }
+    }
+}
+
+#[test]
+fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
+    let fixed_steps = [NEKTON_METHOD_RK4, NEKTON_METHOD_ABM4, NEKTON_METHOD_GAUSS6].map(fixed);
+    for method in fixed_steps.into_iter().chain([adams()]) {
+        // Two bodies on a collision course.
+        let link = ellipse(0.5, 0.5);
+        let mut bodies = [body(), body()];
+        for (b, x, v) in [(0, 0.0, 1.0), (1, 2.0, -1.0)] {
+            (bodies[b].pose, bodies[b].velocity) = ([x, 0.0, 0.0], [v, 0.0, 0.0]);
+            (bodies[b].links, bodies[b].link_count) = (&link, 1);
+        }
+        let mut def = scene();
+        // In vacuum nothing keeps them apart.
+        (def.bodies, def.body_count, def.fluid_density) = (bodies.as_ptr(), 2, 0.0);
+        let (_model_memory, model) = compile(&def);
+        let (_memory, sim) = simulate(model, &method);
+        let (_twin_memory, twin) = simulate(model, &method);
+        for s in [sim, twin] {
+            assert_eq!(unsafe { sim_advance(s, 0.1, null_mut()) }, 0);
+            assert_eq!(unsafe { sim_advance_dense(s, 0.12, 0.2, null_mut()) }, 0);
+        }
+        let shown = |s| {
+            let (mut q, mut qd, mut c) = ([0.0; 6], [0.0; 6], nekton_counters::default());
+            unsafe {
+                assert_eq!(sim_positions(s, q.as_mut_ptr(), 6), 0);
+                assert_eq!(sim_velocities(s, qd.as_mut_ptr(), 6), 0);
+                assert_eq!(sim_counters(s, &mut c), 0);
+            }
+            (state(model, s), q, qd, c)
+        };
+        let before = shown(sim);
+        let mut diag = empty_diag();
+        let n = before.0.1.len();
+        let (mut out, nan) = (vec![0.0; n], f64::NAN);
+        let mut y = before.0.1.clone();
+        y[0] = 2.0;
+        unsafe {
+            assert_eq!(sim_advance(sim, 5.0, &mut diag), Status::Contact.code());
+            assert!(diag.time > 0.12 && diag.time < 1.0, "{diag:?}");
+            assert_eq!(diag.place.kind, NEKTON_PLACE_LINK);
+            assert_eq!(shown(sim), before);
+            assert_eq!(sim_advance_dense(sim, 5.0, 6.0, &mut diag), Status::Contact.code());
+            assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_set_step_limit(sim, 0), Status::OutOfRange.code());
+            // Of free flight the variable-step method makes one step.
+            if method.kind != NEKTON_METHOD_ADAMS {
+                assert_eq!(sim_set_step_limit(sim, 1), 0);
+                assert_eq!(sim_advance(sim, 0.3, &mut diag), Status::TooManySteps.code());
+                assert!(diag.time > 0.12 && diag.time < 0.3, "{diag:?}");
+            }
+            assert_eq!(sim_set_step_limit(sim, 1_000_000), 0);
+            assert_eq!(sim_advance(sim, nan, &mut diag), Status::NotFinite.code());
+            assert_eq!(sim_advance(sim, f64::INFINITY, &mut diag), Status::NotFinite.code());
+            assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n, &mut diag), Status::Contact.code());
+            assert_eq!(sim_set_state(sim, nan, y.as_ptr(), n, &mut diag), Status::NotFinite.code());
+            assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n - 1, &mut diag), Status::Length.code());
+            assert_eq!(sim_set_state(sim, 0.0, null(), n, &mut diag), Status::NullPointer.code());
+            assert_eq!(sim_rhs(sim, 0.0, y.as_ptr(), out.as_mut_ptr(), n, &mut diag), Status::Contact.code());
+            assert!(out.iter().all(|x| *x == 0.0));
+            y[1] = nan;
+            assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n, &mut diag), Status::NotFinite.code());
+            assert_eq!(sim_rhs(sim, 0.0, y.as_ptr(), out.as_mut_ptr(), n, &mut diag), Status::NotFinite.code());
+            let y = y.as_mut_ptr();
+            assert_eq!(sim_rhs(sim, 0.0, y, y.add(1), n, &mut diag), Status::Aliasing.code());
+            assert_eq!(
+                sim_set_channel(sim, 0, [0.0; 4].as_ptr(), [1.0; 4].as_ptr(), &mut diag),
+                Status::Unsupported.code()
+            );
+            assert_eq!(
+                sim_set_channel(sim, 0, [nan; 4].as_ptr(), [1.0; 4].as_ptr(), &mut diag),
+                Status::NotFinite.code()
+            );
+            assert_eq!(
+                sim_set_channel(sim, 0, [1.0; 4].as_ptr(), [1.0; 4].as_ptr(), &mut diag),
+                Status::BadTable.code()
+            );
+            // Buffers: wrong length, NULL, misaligned, inside the object.
+            assert_eq!(sim_positions(sim, out.as_mut_ptr(), 5), Status::Length.code());
+            assert_eq!(sim_positions(sim, null_mut(), 6), Status::NullPointer.code());
+            assert_eq!(sim_positions(sim, out.as_mut_ptr().wrapping_byte_add(1), 6), Status::Misaligned.code());
+            assert_eq!(sim_positions(sim, sim.cast::<f64>().wrapping_add(40), 6), Status::Aliasing.code());
+            assert_eq!(sim_mass_matrix(sim, out.as_mut_ptr(), 6, &mut diag), Status::Length.code());
+            assert_eq!(sim_mass_matrix(sim, out.as_mut_ptr(), usize::MAX, &mut diag), Status::Length.code());
+            assert_eq!(sim_energy(sim, null_mut(), &mut diag), Status::NullPointer.code());
+        }
+        assert_eq!(shown(sim), before);
+        // It goes on as if nothing had been tried.
+        for s in [sim, twin] {
+            assert_eq!(unsafe { sim_step(s, null_mut()) }, 0);
+            let (t, _) = state(model, s);
+            assert_eq!(unsafe { sim_advance(s, t + 1e-3, null_mut()) }, 0);
+        }
+        assert_eq!(shown(sim), shown(twin));
+    }
+}
+
+#[test]
+fn a_copy_goes_on_like_its_original() {
+    with_scene(|def, _, links| {
+        links[1].signal.kind = NEKTON_SIGNAL_CHANNEL;
+        let (_model_memory, model) = compile(def);
+        for method in [adams(), fixed(NEKTON_METHOD_ABM4), fixed(NEKTON_METHOD_GAUSS6)] {
+            let (_a, original) = simulate(model, &method);
+            let (_b, copy) = simulate(model, &fixed(NEKTON_METHOD_RK4));
+            let (from, to) = ([0.0; 4], [0.5, 0.2, 0.0, 0.0]);
+            unsafe {
+                assert_eq!(sim_set_channel(original, 0, from.as_ptr(), to.as_ptr(), null_mut()), 0);
+                assert_eq!(sim_advance_dense(original, 0.05, 0.06, null_mut()), 0);
+                // The copy has been elsewhere.
+                assert_eq!(sim_advance(copy, 0.2, null_mut()), 0);
+                assert_eq!(sim_copy(copy, original, null_mut()), 0);
+                assert_eq!(state(model, copy), state(model, original));
+                for s in [original, copy] {
+                    assert_eq!(sim_step(s, null_mut()), 0);
+                    assert_eq!(sim_advance(s, 0.2, null_mut()), 0);
+                }
+                assert_eq!(state(model, copy), state(model, original));
+                assert_eq!(sim_copy(copy, copy, null_mut()), 0);
+                let (_m, other_model) = compile(def);
+                let (_s, other) = simulate(other_model, &method);
+                assert_eq!(sim_copy(other, original, null_mut()), Status::BadHandle.code());
+                assert_eq!(sim_copy(null_mut(), original, null_mut()), Status::NullPointer.code());
+            }
+        }
+    });
+}
+
+#[test]
+fn objects_from_the_heap_work_and_are_freed() {
+    with_scene(|def, _, _| unsafe {
+        let (mut model, mut sim, mut back, mut diag) = (null_mut(), null_mut(), null(), empty_diag());
+        assert_eq!(model_create(def.get(), &mut model, &mut diag), 0);
+        assert_eq!(diag.status, 0);
+        assert_eq!(sim_create(model, &adams(), &mut sim, &mut diag), 0);
+        assert_eq!(sim_model(sim, &mut back), 0);
+        assert_eq!(back, model.cast_const());
+        assert_eq!(sim_advance(sim, 0.1, &mut diag), 0);
+        let (_memory, mine) = simulate(model, &adams());
+        assert_eq!(sim_advance(mine, 0.1, &mut diag), 0);
+        assert_eq!(state(model, mine), state(model, sim));
+        let mut info = std::mem::MaybeUninit::<nekton_joint_info>::uninit();
+        assert_eq!(model_joint(model, 0, info.as_mut_ptr()), 0);
+        assert_eq!(info.assume_init().prescribed, 0);
+        assert_eq!(model_joint(model, 1, info.as_mut_ptr()), Status::OutOfRange.code());
+        assert_eq!(sim_free(sim), 0);
+        assert_eq!(model_free(model), 0);
+    });
+}
+
+#[test]
+fn texts_say_what_where_and_which_value() {
+    let text = |diag: &nekton_diag| {
+        let mut buffer = [1u8; 200];
+        unsafe { nekton_ffi::shared::nekton_diag_text(diag, buffer.as_mut_ptr().cast(), 200) };
+        String::from_utf8(buffer.iter().copied().take_while(|b| *b != 0).collect()).unwrap()
+    };
+    with_scene(|def, _, links| {
+        links[1].shape.b = f64::INFINITY;
+        let (mut req, mut diag) = (nekton_req::default(), empty_diag());
+        unsafe { model_req(def.get(), &mut req, &mut diag) };
+        assert_eq!(text(&diag), "body 0, link 1: a value is not finite (b = inf)");
+        let mut short = [1u8; 9];
+        unsafe { nekton_ffi::shared::nekton_diag_text(&diag, short.as_mut_ptr().cast(), 8) };
+        assert_eq!(&short, b"body 0,\0\x01");
+        for (value, expected) in [
+            (-0.0012345, "-1.23450e-3"),
+            (1.5, "1.50000"),
+            (-42.0, "-42"),
+            (6.02e23, "6.02000e23"),
+            (9.9999999, "1.00000e1"),
+        ] {
+            diag.value = value;
+            assert!(text(&diag).ends_with(&format!("(b = {expected})")), "{}", text(&diag));
+        }
+        for value in [f64::MAX, f64::MIN_POSITIVE, 5e-324, 0.0, -0.0] {
+            diag.value = value;
+            text(&diag);
+        }
+    });
+    for status in Status::ALL {
+        let of = |text: *const core::ffi::c_char| unsafe { std::ffi::CStr::from_ptr(text) }.to_str().unwrap();
+        assert_eq!(of(nekton_ffi::shared::nekton_status_text(status.code())), status.text());
+        assert_eq!(of(nekton_ffi::shared::nekton_status_name(status.code())), status.name());
+    }
+}
