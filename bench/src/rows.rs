@@ -198,7 +198,7 @@ fn lone_step() -> Measured {
 
 /// Time of two rollouts at once on two threads, divided by that of the two one after the other; and in the note the same of
 /// LAPACK's factorization, to tell what the machine's second thread is worth. The second thread stays awake between its turns, as
-/// a controller's would: a processor that wakes runs its first milliseconds at a lower speed (a quarter of these rollouts).
+/// a controller's would: to wake a processor takes some virtual machines milliseconds.
 fn rollouts(lapack: &Lapack) -> Measured {
     const IDLE: u8 = 0;
     const PEER: u8 = 1;

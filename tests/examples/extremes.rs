@@ -27,6 +27,11 @@ fn main() -> std::io::Result<()> {
         ("spin", "spin_by_translation", powers(1, 6), spin),
         ("repulsion", "exponent", (1..=12).map(f64::from).collect(), repulsion),
     ];
+    let names: Vec<&str> = tables.iter().map(|t| t.0).chain(["steps", "long_run"]).collect();
+    if let Some(unknown) = only.as_deref().filter(|o| !names.contains(o)) {
+        eprintln!("no table `{unknown}`; there are {}", names.join(", "));
+        std::process::exit(2);
+    }
     for (name, parameter, values, case) in tables {
         if only.as_deref().is_some_and(|o| o != name) {
             continue;
