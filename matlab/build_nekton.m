@@ -1,8 +1,7 @@
-function build_nekton(varargin)
+function build_nekton()
 %BUILD_NEKTON  Build the gateway nekton_mex, in Matlab or in Octave.
-%   build_nekton           builds nekton_mex in the folder of this file. The library itself is built by cargo
-%                          (https://rustup.rs) when target/release has none.
-%   build_nekton('force')  lets cargo bring the library up to date first.
+%   build_nekton builds nekton_mex in the folder of this file, after cargo (https://rustup.rs) has brought the library up to date.
+%   Without cargo it takes the library that target/release has.
 %
 %   Nothing is to be installed besides a C compiler and, for the library, Rust. The result contains the library.
 
@@ -12,11 +11,16 @@ archive = fullfile(root, 'target', 'release', 'libnekton_ffi.a');
 if ispc()
     archive = fullfile(root, 'target', 'release', 'nekton_ffi.lib');
 end
-if any(strcmp(varargin, 'force')) || exist(archive, 'file') ~= 2
+[missing, ~] = system('cargo --version');
+if missing && exist(archive, 'file') ~= 2
+    error('nekton:build:cargo', 'there is no cargo to build the library; it is part of Rust, see https://rustup.rs');
+elseif missing
+    warning('nekton:build:cargo', 'there is no cargo to bring the library up to date: %s is taken as it is', archive);
+else
     command = sprintf('cargo build --release --package nekton-ffi --manifest-path "%s"', fullfile(root, 'Cargo.toml'));
     disp(command);
     if system(command) ~= 0
-        error('nekton:build:cargo', 'cargo failed; it is part of Rust, see https://rustup.rs');
+        error('nekton:build:cargo', 'cargo failed; what it says stands above');
     end
 end
 

@@ -92,7 +92,7 @@ fn matlab() -> Outcome {
     }
     let mut octave = Command::new("octave-cli");
     // Without a history Octave does not complain when it exits.
-    octave.args(["--norc", "--no-history", "--quiet", "--eval", "build_nekton('force'); run_tests"]);
+    octave.args(["--norc", "--no-history", "--quiet", "--eval", "build_nekton; run_tests"]);
     execute(octave.current_dir(root().join("matlab")))
 }
 
