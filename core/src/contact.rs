@@ -4,7 +4,7 @@ use crate::boundary::{BoundaryRecord, Nodes};
 use crate::configuration::{Poses, targets};
 use crate::lu::{Machine, Task};
 use crate::model::Model;
-use crate::nystrom::{LANES, lanes};
+use crate::nystrom::LANES;
 use crate::scalar::{Complex, Real, cabs, cis, complex, dot, perp};
 use crate::se2::Pose;
 use crate::status::Place;
@@ -71,10 +71,13 @@ fn square_to<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>) -> R {
         }
         best
     };
-    let ((x, x_rest), (y, y_rest)) = (nodes.x.as_chunks(), nodes.y.as_chunks());
+    let (x, y) = (nodes.x.as_chunks().0, nodes.y.as_chunks().0);
     let mut best = x.iter().zip(y).fold([R::MAX; LANES], |best, (x, y)| nearer(best, *x, *y));
-    if let (Some(x), Some(y)) = (x_rest.last(), y_rest.last()) {
-        best = nearer(best, lanes(x_rest, *x), lanes(y_rest, *y));
+    // What is left, together with some that were there already: no boundary has fewer nodes than lanes.
+    if !nodes.x.len().is_multiple_of(LANES)
+        && let (Some(x), Some(y)) = (nodes.x.last_chunk(), nodes.y.last_chunk())
+    {
+        best = nearer(best, *x, *y);
     }
     best.iter().fold(R::MAX, |m, d| if *d < m { *d } else { m })
 }

@@ -195,17 +195,22 @@ fn kernel_column<R: Real>([zx, zy]: [&[R]; 2], g: Complex<R>, weight: Complex<R>
         let (dx, dy) = (g.re - x, g.im - y);
         (weight.re * dy - weight.im * dx) / (dx * dx + dy * dy)
     };
-    let ((x8, x), (y8, y)) = (zx.as_chunks::<LANES>(), zy.as_chunks::<LANES>());
-    let (out8, out) = part_mut(out, 0, zx.len()).as_chunks_mut::<LANES>();
-    for ((out, x), y) in out8.iter_mut().zip(x8).zip(y8) {
+    let values = |x: &[R; LANES], y: &[R; LANES]| {
         let mut lanes = [R::zero(); LANES];
         for ((lane, x), y) in lanes.iter_mut().zip(x).zip(y) {
             *lane = value(*x, *y);
         }
-        *out = lanes;
+        lanes
+    };
+    let out = part_mut(out, 0, zx.len());
+    for ((out, x), y) in out.as_chunks_mut().0.iter_mut().zip(zx.as_chunks().0).zip(zy.as_chunks().0) {
+        *out = values(x, y);
     }
-    for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
-        *out = value(*x, *y);
+    // What is left, together with some that were there already: no boundary has fewer nodes than lanes.
+    if !zx.len().is_multiple_of(LANES)
+        && let (Some(out), Some(x), Some(y)) = (out.last_chunk_mut(), zx.last_chunk(), zy.last_chunk())
+    {
+        *out = values(x, y);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::christoffel::{PairScratch, Relative, add_pose_sums, pose_sums};
 use crate::configuration::Configuration;
 use crate::lu::{Machine, Task};
 use crate::near::HERE;
-use crate::nystrom::{LANES, add_pole_velocity, lanes, put_lanes, sum_of};
+use crate::nystrom::{LANES, add_pole_velocity, lanes, sum_of};
 use crate::scalar::{Complex, Real, complex};
 use crate::workspace::{part, part_mut};
 
@@ -166,6 +166,12 @@ impl<R: Real, const BOTH: bool> Task for Pair<'_, '_, '_, R, BOTH> {
         let (dx, dy, u) = (a.nodes.dx.as_chunks(), a.nodes.dy.as_chunks(), a.density.as_chunks());
         let whole = x.0.iter().zip(y.0).zip(fx.0.iter().zip(fy.0)).zip(dx.0.iter().zip(dy.0).zip(u.0));
         let (hx, hy, out) = (hx.as_chunks_mut(), hy.as_chunks_mut(), a.out.as_chunks_mut());
+        // Nodes that fill no vector, and their sums. What is missing stands where the last one stands, without weight.
+        let last = |x: &[R]| lanes(x, x.last().copied().unwrap_or(R::zero()));
+        let rest = [last(x.1), last(y.1)];
+        let [rest_fx, rest_fy, rest_dx, rest_dy, rest_u] = [fx.1, fy.1, dx.1, dy.1, u.1].map(|x| lanes(x, R::zero()));
+        let rest = [rest[0], rest[1], rest_fx, rest_fy, rest_dx, rest_dy, rest_u];
+        let mut rest_sums = [[R::zero(); LANES]; 3];
         let ([bfx, bfy], [bhx, bhy]) = (&b.f, &mut b.h);
         let weights = bfx.iter().zip(bfy.iter()).zip(b.density);
         let sums = bhx.iter_mut().zip(bhy.iter_mut()).zip(b.out.iter_mut());
@@ -179,20 +185,17 @@ impl<R: Real, const BOTH: bool> Task for Pair<'_, '_, '_, R, BOTH> {
                 ([*hx, *hy, *out], total) = lanes_of_pair::<R, BOTH>(one, far, [*hx, *hy, *out], total);
             }
             if !x.1.is_empty() {
-                // What is missing stands at distance 1 and has no weight.
-                let (x, y, zero) = (lanes(x.1, g.re - R::one()), lanes(y.1, g.im), R::zero());
-                let (fx, fy, dx, dy) = (lanes(fx.1, zero), lanes(fy.1, zero), lanes(dx.1, zero), lanes(dy.1, zero));
-                let old = [lanes(hx.1, zero), lanes(hy.1, zero), lanes(out.1, zero)];
-                let (new, sums) = lanes_of_pair::<R, BOTH>(one, [x, y, fx, fy, dx, dy, lanes(u.1, zero)], old, total);
-                put_lanes(new[0], hx.1);
-                put_lanes(new[1], hy.1);
-                put_lanes(new[2], out.1);
-                total = sums;
+                (rest_sums, total) = lanes_of_pair::<R, BOTH>(one, rest, rest_sums, total);
             }
             // Through memory: else the sums are carried lane by lane through the loop above.
             let [own, vx, vy] = core::hint::black_box(total);
             *sum += sum_of(own);
             (*bhx, *bhy) = (sum_of(vx), sum_of(vy));
+        }
+        for (sums, out) in rest_sums.iter().zip([hx.1, hy.1, out.1]) {
+            for (out, sum) in out.iter_mut().zip(sums) {
+                *out += *sum;
+            }
         }
         if !BOTH {
             return;
