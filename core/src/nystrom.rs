@@ -10,7 +10,7 @@ use crate::configuration::{Configuration, fill_targets, relative, targets};
 use crate::lu::{Machine, Task};
 use crate::model::ModelHead;
 use crate::near::preimage::Targets;
-use crate::near::{self, pole};
+use crate::near::{self, Near, pole};
 use crate::scalar::{Complex, Real, complex};
 use crate::workspace::{copy, part, part_mut, put};
 
@@ -140,14 +140,45 @@ pub(crate) fn add_pole_velocity<R: Real>(
     if table.is_empty() {
         return;
     }
-    let (machine, scale) = (Machine::here(), source.sign / R::PI);
-    for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
-        for p in c.preimages(j, first + i) {
-            let h = match fx.get(i).zip(fy.get(i)) {
-                Some((fx, fy)) => pole::slope_products(machine, &p, table, wx, complex(*fx, *fy), scale, out),
-                None => pole::slope_sum(machine, &p, table, [wx, wy], scale),
-            };
-            (*hx, *hy) = (*hx + h.re, *hy + h.im);
+    let scale = source.sign / R::PI;
+    Machine::here().run(PoleVelocity {
+        near: c.near,
+        j,
+        first,
+        table,
+        scale,
+        w: [wx, wy],
+        f: [fx, fy],
+        h: [hx, hy],
+        out,
+    });
+}
+
+/// The loop of [`add_pole_velocity`].
+struct PoleVelocity<'a, 'b, R> {
+    near: Near<'a, R>,
+    j: usize,
+    first: usize,
+    table: &'a [R],
+    scale: R,
+    w: [&'b [R]; 2],
+    f: [&'b [R]; 2],
+    h: [&'b mut [R]; 2],
+    out: &'b mut [R],
+}
+
+impl<R: Real> Task for PoleVelocity<'_, '_, R> {
+    #[inline(always)]
+    fn run(self) {
+        let PoleVelocity { near, j, first, table, scale, w, f: [fx, fy], h: [hx, hy], out } = self;
+        for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
+            for p in near.preimages(j, first + i) {
+                let h = match fx.get(i).zip(fy.get(i)) {
+                    Some((fx, fy)) => pole::slope_products(&p, table, w[0], complex(*fx, *fy), scale, out),
+                    None => pole::slope_sum(&p, table, w, scale),
+                };
+                (*hx, *hy) = (*hx + h.re, *hy + h.im);
+            }
         }
     }
 }

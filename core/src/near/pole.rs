@@ -177,8 +177,8 @@ fn slopes<R: Real>(row: &Row<R>, cos: &[R], sin: &[R], first: usize) -> [[R; LAN
 }
 
 /// Σ_k D_ik w_k of the terms of D_ik = dW_ik/dz for one target, scaled, and Im(f D_ik) added to `out_k`.
+#[inline(always)]
 pub(crate) fn slope_products<R: Real>(
-    machine: Machine,
     pre: &Preimage<R>,
     table: &[R],
     w: &[R],
@@ -188,45 +188,25 @@ pub(crate) fn slope_products<R: Real>(
 ) -> Complex<R> {
     let (row, (cos, sin)) = (Row::of(pre, w.len()), turned(table, w.len(), pre.node));
     let factor = row.factor * pre.rate * scale;
-    let mut sum = Complex::default();
-    machine.run(Products { row, cos, sin, w, g: f * factor, out, sum: &mut sum });
-    factor * sum
-}
-
-struct Products<'a, R> {
-    row: Row<R>,
-    cos: &'a [R],
-    sin: &'a [R],
-    w: &'a [R],
-    g: Complex<R>,
-    out: &'a mut [R],
-    sum: &'a mut Complex<R>,
-}
-
-impl<R: Real> Task for Products<'_, R> {
-    #[inline(always)]
-    fn run(self) {
-        let mut sums = [[R::zero(); LANES]; 2];
-        let g = self.g;
-        for (first, skip) in blocks(self.w.len()) {
-            let [re, im] = slopes(&self.row, self.cos, self.sin, first);
-            let mut w = load(self.w, first, R::zero());
-            let out = self.out.get_mut(first..).unwrap_or(&mut []);
-            let mut sum = load(out, 0, R::zero());
-            let g = g * sign::<R>(first);
-            for i in 0..LANES {
-                w[i] = if i < skip { R::zero() } else { w[i] * sign(first) };
-                sums[0][i] += re[i] * w[i];
-                sums[1][i] += im[i] * w[i];
-                sum[i] += if i < skip { R::zero() } else { g.re * im[i] + g.im * re[i] };
-            }
-            match out.first_chunk_mut() {
-                Some(out) => *out = sum,
-                None => copy(out, &sum),
-            }
+    let mut sums = [[R::zero(); LANES]; 2];
+    for (first, skip) in blocks(w.len()) {
+        let [re, im] = slopes(&row, cos, sin, first);
+        let mut w = load(w, first, R::zero());
+        let out = out.get_mut(first..).unwrap_or(&mut []);
+        let mut sum = load(out, 0, R::zero());
+        let g = f * factor * sign::<R>(first);
+        for i in 0..LANES {
+            w[i] = if i < skip { R::zero() } else { w[i] * sign(first) };
+            sums[0][i] += re[i] * w[i];
+            sums[1][i] += im[i] * w[i];
+            sum[i] += if i < skip { R::zero() } else { g.re * im[i] + g.im * re[i] };
         }
-        *self.sum = total(&sums);
+        match out.first_chunk_mut() {
+            Some(out) => *out = sum,
+            None => copy(out, &sum),
+        }
     }
+    factor * total(&sums)
 }
 
 fn total<R: Real>([re, im]: &[[R; LANES]; 2]) -> Complex<R> {
@@ -234,43 +214,19 @@ fn total<R: Real>([re, im]: &[[R; LANES]; 2]) -> Complex<R> {
 }
 
 /// Σ_k D_ik w_k of the terms for one target and a complex density, scaled.
-pub(crate) fn slope_sum<R: Real>(
-    machine: Machine,
-    pre: &Preimage<R>,
-    table: &[R],
-    [wx, wy]: [&[R]; 2],
-    scale: R,
-) -> Complex<R> {
+#[inline(always)]
+pub(crate) fn slope_sum<R: Real>(pre: &Preimage<R>, table: &[R], [wx, wy]: [&[R]; 2], scale: R) -> Complex<R> {
     let (row, (cos, sin)) = (Row::of(pre, wx.len()), turned(table, wx.len(), pre.node));
-    let factor = row.factor * pre.rate * scale;
-    let mut sum = Complex::default();
-    machine.run(Sum { row, cos, sin, wx, wy, sum: &mut sum });
-    factor * sum
-}
-
-struct Sum<'a, R> {
-    row: Row<R>,
-    cos: &'a [R],
-    sin: &'a [R],
-    wx: &'a [R],
-    wy: &'a [R],
-    sum: &'a mut Complex<R>,
-}
-
-impl<R: Real> Task for Sum<'_, R> {
-    #[inline(always)]
-    fn run(self) {
-        let mut sums = [[R::zero(); LANES]; 2];
-        for (first, skip) in blocks(self.cos.len()) {
-            let [re, im] = slopes(&self.row, self.cos, self.sin, first);
-            let (mut x, mut y) = (load(self.wx, first, R::zero()), load(self.wy, first, R::zero()));
-            for i in 0..LANES {
-                let factor = if i < skip { R::zero() } else { sign(first) };
-                (x[i], y[i]) = (x[i] * factor, y[i] * factor);
-                sums[0][i] += re[i] * x[i] - im[i] * y[i];
-                sums[1][i] += re[i] * y[i] + im[i] * x[i];
-            }
+    let mut sums = [[R::zero(); LANES]; 2];
+    for (first, skip) in blocks(cos.len()) {
+        let [re, im] = slopes(&row, cos, sin, first);
+        let (mut x, mut y) = (load(wx, first, R::zero()), load(wy, first, R::zero()));
+        for i in 0..LANES {
+            let factor = if i < skip { R::zero() } else { sign(first) };
+            (x[i], y[i]) = (x[i] * factor, y[i] * factor);
+            sums[0][i] += re[i] * x[i] - im[i] * y[i];
+            sums[1][i] += re[i] * y[i] + im[i] * x[i];
         }
-        *self.sum = total(&sums);
     }
+    row.factor * pre.rate * scale * total(&sums)
 }
