@@ -21,7 +21,7 @@ use crate::workspace::{at, axpy, inner, part, part_mut};
 
 /// Estimated error of one step (of positions, and of velocities over another step), in reaches of a link or in radians, from which
 /// on steps are too long.
-pub const COARSE: f64 = 0.1;
+pub const STEP_ERROR_LIMIT: f64 = 0.1;
 
 /// Relative error indicators of the space discretization. They do not see an error of the shape itself.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
@@ -112,12 +112,12 @@ impl<R: Real> Sim<'_, R> {
 
     /// What is to be noticed of the last call of [`Sim::step`] or [`Sim::advance`], and when it was worst; `None` if there is
     /// nothing.
-    /// * `StepTooLong`: the estimated error of a step was [`COARSE`] or more reaches of a link, or radians; the motion is no longer
+    /// * `StepTooLong`: the estimated error of a step was [`STEP_ERROR_LIMIT`] or more reaches of a link, or radians; the motion is no longer
     ///   that of the scene. (`gauss6` has no estimate: its stages are not found then.)
     /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
-    ///   error and the boundaries that are now closest to each other. Never if none was asked for.
+    ///   error and the boundaries that are now closest to each other. Never if none was asked for. O(N²) for that gap.
     pub fn notice(&mut self) -> Option<(R, Error)> {
-        if self.head.watch != Watch::Nothing && self.head.coarsest >= R::lit(COARSE) {
+        if self.head.watch != Watch::Nothing && self.head.coarsest >= R::lit(STEP_ERROR_LIMIT) {
             let notice = Error::new(Status::StepTooLong).of("error", self.head.coarsest.to_f64());
             return Some((self.head.coarsest_time, notice));
         }

@@ -12,6 +12,7 @@ use crate::model::ModelHead;
 use crate::near::preimage::Targets;
 use crate::near::{self, Near, pole};
 use crate::scalar::{Complex, Real, complex};
+use crate::validate::LEAST_NODES;
 use crate::workspace::{copy, part, part_mut, put};
 
 /// 1/N_T in every entry of the tank's own block.
@@ -300,3 +301,5 @@ pub(crate) fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
 
 /// Lanes of the sums over targets.
 pub(crate) const LANES: usize = 8;
+// What fills no vector is done again together with nodes before it.
+const _: () = assert!(LANES <= LEAST_NODES);

@@ -167,10 +167,9 @@ impl<R: Real, const BOTH: bool> Task for Pair<'_, '_, '_, R, BOTH> {
         let whole = x.0.iter().zip(y.0).zip(fx.0.iter().zip(fy.0)).zip(dx.0.iter().zip(dy.0).zip(u.0));
         let (hx, hy, out) = (hx.as_chunks_mut(), hy.as_chunks_mut(), a.out.as_chunks_mut());
         // Nodes that fill no vector, and their sums. What is missing stands where the last one stands, without weight.
-        let last = |x: &[R]| lanes(x, x.last().copied().unwrap_or(R::zero()));
-        let rest = [last(x.1), last(y.1)];
-        let [rest_fx, rest_fy, rest_dx, rest_dy, rest_u] = [fx.1, fy.1, dx.1, dy.1, u.1].map(|x| lanes(x, R::zero()));
-        let rest = [rest[0], rest[1], rest_fx, rest_fy, rest_dx, rest_dy, rest_u];
+        let place = |x: &[R]| lanes(x, x.last().copied().unwrap_or(R::zero()));
+        let weight = |x: &[R]| lanes(x, R::zero());
+        let rest = [place(x.1), place(y.1), weight(fx.1), weight(fy.1), weight(dx.1), weight(dy.1), weight(u.1)];
         let mut rest_sums = [[R::zero(); LANES]; 3];
         let ([bfx, bfy], [bhx, bhy]) = (&b.f, &mut b.h);
         let weights = bfx.iter().zip(bfy.iter()).zip(b.density);

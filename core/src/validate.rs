@@ -5,6 +5,8 @@ use crate::scalar::Real;
 use crate::scene::{Description, Drive, JointKind, Link, Mass, Quadrature};
 use crate::status::{Error, Place, Result, Status};
 
+/// Least nodes of a boundary.
+pub(crate) const LEAST_NODES: usize = 8;
 /// Most nodes allowed on one boundary.
 const MOST_NODES: usize = 1 << 16;
 
@@ -37,7 +39,7 @@ pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
     }
     for item in items(scene) {
         let here = |e: Error| e.at(item.place);
-        if item.nodes < 8 || item.nodes % 2 != 0 || item.nodes > MOST_NODES {
+        if item.nodes < LEAST_NODES || item.nodes % 2 != 0 || item.nodes > MOST_NODES {
             return Err(here(Error::new(Status::NodeCount).of("nodes", item.nodes as f64)));
         }
         for (what, x) in [

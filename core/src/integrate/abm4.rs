@@ -72,7 +72,7 @@ impl<R: Real> Abm4<R> {
     /// starts anew, as after [`reset`](Self::reset).
     ///
     /// # Errors
-    /// Those of the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `Length`, `MemoryTooSmall`.
+    /// Those of the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `StepTooSmall`, `Length`, `MemoryTooSmall`.
     /// `y` and the past rates are then as they were, bit for bit.
     pub fn step<S: System<R> + ?Sized>(
         &mut self,

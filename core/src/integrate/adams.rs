@@ -199,7 +199,7 @@ impl<R: Real> Adams<R> {
     /// rates that are not finite, is repeated with a quarter of the step.
     ///
     /// # Errors
-    /// `StepTooSmall` if the tolerance cannot be met, else the error of the last trial; `NotFinite`,
+    /// `StepTooSmall` if the tolerance cannot be met or `t` has no digits for the step, else the error of the last trial; `NotFinite`,
     /// `Length`, `MemoryTooSmall`. The integrator is then as it was after its last step (but for the
     /// counters), and may go on.
     pub fn step<S: System<R> + ?Sized>(&mut self, system: &mut S, t_stop: R, work: &mut [R]) -> Result<()> {

@@ -98,7 +98,7 @@ impl<R: Real> Gauss6<R> {
     ///
     /// # Errors
     /// `NoConvergence` if the stages are not found in 50 sweeps: the step is too long for this method. Those of
-    /// the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `Length`, `MemoryTooSmall`. `y` is then as
+    /// the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `StepTooSmall`, `Length`, `MemoryTooSmall`. `y` is then as
     /// it was, bit for bit.
     pub fn step<S: System<R> + ?Sized>(
         &mut self,

@@ -78,7 +78,7 @@ impl<R: Real> Rk4<R> {
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
     ///
     /// # Errors
-    /// Those of the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `Length`, `MemoryTooSmall`.
+    /// Those of the right-hand side; `NonFiniteState`, `NotFinite`, `BadStep`, `StepTooSmall`, `Length`, `MemoryTooSmall`.
     /// `y` is then as it was, bit for bit.
     pub fn step<S: System<R> + ?Sized>(
         &mut self,
