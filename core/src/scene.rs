@@ -3,7 +3,7 @@
 //! Units are SI per unit depth: lengths m, density kg/m³ (so mass kg/m, inertia kg·m), circulation m²/s,
 //! torque N, force N/m, energy J/m. Angles are radians, counter-clockwise.
 
-use crate::scalar::Real;
+use crate::base::scalar::Real;
 
 /// Everything that describes a scene. Absent ingredients (no gravity, no repulsion, no circulation, no
 /// walls, fluid density 0) cost neither time nor memory.
@@ -28,7 +28,7 @@ pub struct Scene<'a, R> {
     /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
     pub quadrature: Quadrature,
     /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes (`None`:
-    /// [`DEFAULT_TOLERANCE`](crate::resolve::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
+    /// [`DEFAULT_TOLERANCE`](crate::setup::automatic_nodes::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
     pub tolerance: Option<R>,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
@@ -133,7 +133,7 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -168,7 +168,7 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,

@@ -5,8 +5,8 @@ use crate::diag::{Fault, Outcome};
 use crate::shared::NEKTON_ABI_VERSION;
 use crate::types::{ModelHandle, SimHandle, nekton_req};
 use core::mem::MaybeUninit;
-use nekton::boundary::BoundaryRecord;
-use nekton::model::{CoordinateRecord, LinkRecord};
+use nekton::BoundaryRecord;
+use nekton::{CoordinateRecord, LinkRecord};
 use nekton::{Model, ModelHead, ModelRequirement, Real, Sim, SimHead, Status};
 
 /// Alignment of every object.

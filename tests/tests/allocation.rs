@@ -2,8 +2,8 @@
 
 #![allow(unsafe_code)]
 
-use nekton::boundary::BoundaryRecord;
-use nekton::model::{CoordinateRecord, LinkRecord};
+use nekton::BoundaryRecord;
+use nekton::{CoordinateRecord, LinkRecord};
 use nekton::scene::{Drive, Harmonic, Link, Repulsion, Scene, Shape, Signal, Wall};
 use nekton::{Formulation, Method, Model, ModelMemory, Result, Sim, Status};
 use nekton_tests::*;

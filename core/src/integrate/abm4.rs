@@ -2,9 +2,9 @@
 
 use super::rk4::later_stages;
 use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Result, Status};
-use crate::workspace::{buffers, copy, part};
+use crate::base::memory::{buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 /// Predicts by Adams–Bashforth 4, evaluates, corrects by Adams–Moulton 4 and evaluates (PECE): two
 /// evaluations a step, local error O(h⁵). The first three steps are Runge–Kutta 4.

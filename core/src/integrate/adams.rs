@@ -3,9 +3,9 @@
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
 use super::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
-use crate::scalar::Real;
-use crate::status::{Error, Result, Status};
-use crate::workspace::{buffers, copy, part};
+use crate::base::memory::{buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
 
 /// Predicts at order k, evaluates, corrects at order k + 1, evaluates (PECE), k = 1 … 12: the method of
 /// Matlab's `ode113`. Step and order follow the estimated error of each step,

@@ -1,9 +1,9 @@
 //! The implicit Runge–Kutta method of Gauss and Legendre with three stages, of order 6.
 
 use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Error, Result, Status};
-use crate::workspace::{buffers, copy};
+use crate::base::memory::{buffers, copy};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
 
 /// Gauss–Legendre Runge–Kutta with three stages (Hairer, Lubich & Wanner 2006, sections II.1.3, VIII.6): order 6,
 /// symmetric in time. On motions that can be run backwards its energy error neither grows nor decays.

@@ -12,8 +12,8 @@
 //! The integrators are small `Copy` values; everything that grows with the dimension lies in a work slice
 //! of `work_len(dim)` numbers, which belongs to one integrator from one call to the next.
 
-use crate::scalar::Real;
-use crate::status::{Error, Result, Status};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
 
 pub mod abm4;
 pub mod adams;

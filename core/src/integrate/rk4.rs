@@ -1,9 +1,9 @@
 //! The classical Runge–Kutta method of order 4.
 
 use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Result, Status};
-use crate::workspace::{axpy, buffers, copy, part};
+use crate::base::memory::{axpy, buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 /// The classical Runge–Kutta method: four evaluations a step, local error O(h⁵).
 ///

@@ -1,0 +1,7 @@
+//! The ground: scalar types, status codes, and small pieces that everything above is made of. Knows nothing of bodies and fluid.
+
+pub(crate) mod elementary;
+pub(crate) mod memory;
+pub(crate) mod once;
+pub mod scalar;
+pub mod status;

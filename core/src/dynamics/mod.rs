@@ -1,0 +1,9 @@
+//! Equations of motion: from a state to accelerations.
+
+pub(crate) mod accelerations;
+pub(crate) mod articulation;
+pub(crate) mod christoffel;
+pub(crate) mod evaluation;
+pub(crate) mod forces;
+pub(crate) mod indicators;
+pub(crate) mod kirchhoff;

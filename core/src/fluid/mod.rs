@@ -1,0 +1,10 @@
+//! The fluid around all boundaries of one configuration: boundary system, potentials, induced velocities, gaps.
+
+pub(crate) mod assembly;
+#[cfg(all(test, feature = "alloc"))]
+mod assembly_test;
+pub(crate) mod configuration;
+pub(crate) mod contact;
+pub(crate) mod near;
+pub(crate) mod pair_pass;
+pub(crate) mod potentials;

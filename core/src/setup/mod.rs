@@ -1,0 +1,9 @@
+//! From a scene to a model.
+
+pub(crate) mod automatic_nodes;
+pub(crate) mod compile;
+mod layout;
+#[cfg(feature = "alloc")]
+pub(crate) mod owned;
+mod records;
+pub(crate) mod validate;
