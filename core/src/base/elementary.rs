@@ -4,75 +4,6 @@
 
 use crate::base::scalar::Real;
 
-/// What a floating-point number's bits tell.
-pub trait Bits: Sized {
-    /// Added and subtracted, it rounds to the nearest integer.
-    #[doc(hidden)]
-    const ROUNDER: Self;
-    /// π/2 in three parts, of which the first two have bits to spare for a factor.
-    #[doc(hidden)]
-    const HALF_PI: [Self; 3];
-    /// ln 2 in two parts.
-    #[doc(hidden)]
-    const LN_2: [Self; 2];
-    /// m and e with x = m 2^e, √½ ≤ m < √2, of a positive normal number.
-    #[doc(hidden)]
-    fn split(self) -> [Self; 2];
-    /// 2^n of an integer in the range of exponents.
-    #[doc(hidden)]
-    fn power_of_two(self) -> Self;
-    /// 1/√x to 4 %, of a positive number.
-    #[doc(hidden)]
-    fn rough_rsqrt(self) -> Self;
-}
-
-macro_rules! bits {
-    ($t:ident, $u:ident, $mantissa:literal, $bias:literal, $half:literal, $magic:literal, $pi:expr, $ln:expr) => {
-        impl Bits for $t {
-            const ROUNDER: Self = 1.5 * (1u64 << $mantissa) as $t;
-            const HALF_PI: [Self; 3] = $pi;
-            const LN_2: [Self; 2] = $ln;
-            #[inline(always)]
-            fn split(self) -> [Self; 2] {
-                const TWO_TO: $t = (1u64 << $mantissa) as $t;
-                let bits = self.to_bits();
-                // Biased exponent of x/√½.
-                let exponent = bits.wrapping_sub($half).wrapping_add($bias << $mantissa) >> $mantissa;
-                let m = bits.wrapping_sub(exponent.wrapping_sub($bias) << $mantissa);
-                [$t::from_bits(m), ($t::from_bits(exponent | TWO_TO.to_bits()) - TWO_TO) - $bias as $t]
-            }
-            #[inline(always)]
-            fn power_of_two(self) -> Self {
-                $t::from_bits((self + ((1u64 << $mantissa) + $bias) as $t).to_bits() << $mantissa)
-            }
-            #[inline(always)]
-            fn rough_rsqrt(self) -> Self {
-                $t::from_bits(($magic as $u).wrapping_sub(self.to_bits() >> 1))
-            }
-        }
-    };
-}
-bits!(
-    f64,
-    u64,
-    52,
-    1023,
-    0x3fe6_a09e_667f_3bcd,
-    0x5fe6_eb50_c7b5_37a9u64,
-    [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21],
-    [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10]
-);
-bits!(
-    f32,
-    u32,
-    23,
-    127,
-    0x3f35_04f3,
-    0x5f37_59dfu32,
-    [1.570_312_5, 4.837_513e-4, 7.549_79e-8],
-    [0.693_359_4, -2.121_944_4e-4]
-);
-
 /// c₀ + c₁ x + …
 #[inline(always)]
 fn polynomial<R: Real, const N: usize>(x: R, c: [f64; N]) -> R {
@@ -330,18 +261,18 @@ mod tests {
     }
 
     #[test]
-    fn complex_functions_agree_with_the_scalar_modules() {
-        use crate::base::scalar;
+    fn complex_functions_agree_with_the_complex_modules() {
+        use crate::base::complex;
         for (i, r) in many(1e-9, 0.9).into_iter().enumerate() {
-            let z = scalar::cis(i as f64) * r;
-            let near = |got: [f64; 2], exact: scalar::Complex<f64>, name: &str| {
-                let error = scalar::cabs(scalar::complex(got[0], got[1]) - exact) / scalar::cabs(exact);
+            let z = complex::cis(i as f64) * r;
+            let near = |got: [f64; 2], exact: complex::Complex<f64>, name: &str| {
+                let error = complex::cabs(complex::complex(got[0], got[1]) - exact) / complex::cabs(exact);
                 assert!(error < 2e-15, "{name}({z}): {error}");
             };
-            near(csqrt([z.re, z.im]), scalar::csqrt(z), "sqrt");
-            near(cln_1p([z.re, z.im]), scalar::cln_1p(z), "ln_1p");
-            near(catan([z.re, z.im]), scalar::catan(z), "atan");
-            near(quotient([1.0, 2.0], [z.re, z.im]), scalar::complex(1.0, 2.0) / z, "quotient");
+            near(csqrt([z.re, z.im]), complex::csqrt(z), "sqrt");
+            near(cln_1p([z.re, z.im]), complex::cln_1p(z), "ln_1p");
+            near(catan([z.re, z.im]), complex::catan(z), "atan");
+            near(quotient([1.0, 2.0], [z.re, z.im]), complex::complex(1.0, 2.0) / z, "quotient");
         }
     }
 }

@@ -280,7 +280,7 @@ impl<R: Real> Work<'_, R> {
         let mut sum = (inner(column, momenta.1) + inner(other, momenta.0)) * R::HALF;
         for (i, link) in model.links.iter().enumerate() {
             let (a, b) = (twist_of(column, i), twist_of(other, i));
-            sum += link.mass * crate::base::scalar::dot(a.linear, b.linear) + link.inertia * a.angular * b.angular;
+            sum += link.mass * crate::base::complex::dot(a.linear, b.linear) + link.inertia * a.angular * b.angular;
         }
         sum
     }
@@ -340,9 +340,9 @@ pub(crate) fn largest_force<R: Real>(model: &Model<'_, R>, force: &[R]) -> R {
 pub(crate) fn add_lone_circulation<R: Real>(c: &Configuration<'_, R>, qd: &[R], force: &mut [R]) {
     let Some((body, _)) = c.boundary(0) else { return };
     let [px, py, _] = c.model.head.lone_impulse;
-    let p = c.pose(0).turned(crate::base::scalar::complex(px, py));
+    let p = c.pose(0).turned(crate::base::complex::complex(px, py));
     let v = twist_of(qd, 0);
-    let linear = crate::base::scalar::perp(v.linear) * body.circulation - crate::base::scalar::perp(p) * v.angular;
+    let linear = crate::base::complex::perp(v.linear) * body.circulation - crate::base::complex::perp(p) * v.angular;
     let angular = v.linear.im * p.re - v.linear.re * p.im;
     let f = twist_of(force, 0);
     let density = c.model.head.fluid_density;

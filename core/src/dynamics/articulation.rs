@@ -3,8 +3,9 @@
 //! Per link (x, y, θ) of the centre of mass. Hinge: r_c + R_c h_c = r_p + R_p h_p, θ_c = θ_p + u. Slider:
 //! r_c + R_c h_c = r_p + R_p (h_p + u a), θ_c = θ_p + angle. Every routine walks the links once: O(links).
 
+use crate::base::complex::{Complex, cis, complex, perp};
 use crate::base::memory::{at, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, cis, complex, perp};
+use crate::base::scalar::Real;
 use crate::fluid::configuration::{Poses, put_pose};
 use crate::geometry::pose::{Pose, Twist};
 use crate::model::{Control, Hold, LinkRecord, Model};
@@ -133,7 +134,7 @@ pub(crate) fn project<R: Real>(model: &Model<'_, R>, s: &[R], poses: &[R], f: &m
         let (pose, own) = (pose_of(model, poses, link.parent), pose_of(model, poses, i));
         let (arm_p, arm_c, axis) = arms(link, s, &pose, &own);
         // v_c = v_p + ω_p×arm_p + axis u̇ − ω_c×arm_c: the force acts at the anchor.
-        let at_anchor = moment - crate::base::scalar::dot(perp(arm_c), force);
+        let at_anchor = moment - crate::base::complex::dot(perp(arm_c), force);
         match link.hold {
             Hold::Root => {
                 put(out, c, force.re);
@@ -142,10 +143,10 @@ pub(crate) fn project<R: Real>(model: &Model<'_, R>, s: &[R], poses: &[R], f: &m
                 continue;
             }
             Hold::Hinge { .. } => put(out, c, at_anchor),
-            Hold::Slider { .. } => put(out, c, crate::base::scalar::dot(axis, force)),
+            Hold::Slider { .. } => put(out, c, crate::base::complex::dot(axis, force)),
         }
         let carried = twist_of(f, link.parent);
-        let moment = carried.angular + at_anchor + crate::base::scalar::dot(perp(arm_p), force);
+        let moment = carried.angular + at_anchor + crate::base::complex::dot(perp(arm_p), force);
         put_three(f, link.parent, carried.linear + force, moment);
     }
 }

@@ -7,14 +7,16 @@
 //! l = Im((λ ż)ᵀ D) from the same pass, p = M q̇, (J v)_i = ω_i (−v_y, v_x, 0). Either half alone delivers the discrete
 //! power; their mean is the derivative of the symmetrized M and so delivers the discrete impulse too.
 
+use crate::base::complex::{Complex, cabs, complex, dot, perp};
+use crate::base::lanes::{LANES, lanes, sum_of};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{copy, part, part_mut};
-use crate::base::scalar::{Complex, Real, cabs, complex, dot, perp};
+use crate::base::scalar::Real;
 use crate::dynamics::articulation::twist_of;
-use crate::fluid::assembly::{LANES, add_pole_velocity, induced_velocity, lanes, sum_of};
+use crate::fluid::assembly::{add_pole_velocity, induced_velocity};
 use crate::fluid::configuration::Configuration;
 use crate::fluid::configuration::fill_targets;
 use crate::geometry::pose::Twist;
-use crate::linear::lu::{Machine, Task};
 use crate::model::boundary::Nodes;
 
 /// Scratch of the pair passes: six vectors of length N.
@@ -151,6 +153,7 @@ struct PairSums<'a, 'b, R> {
 }
 
 impl<R: Real> Task for PairSums<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         *self.sums = pose_sums(self.weight, &self.nodes, self.h);

@@ -1,8 +1,9 @@
 //! A lone rigid body: its added mass and the impulse of its circulation are constant in its own frame, so they are
 //! computed once and no boundary system is solved while stepping (Kirchhoff's equations).
 
+use crate::base::complex::{Complex, cis, cln, complex, dot, perp};
 use crate::base::memory::{add, at, copy, part_mut, put, take};
-use crate::base::scalar::{Complex, Real, cis, cln, complex, dot, perp};
+use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 use crate::dynamics::articulation::twist_of;
 use crate::dynamics::evaluation::{Counters, Work};

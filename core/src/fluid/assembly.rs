@@ -5,15 +5,17 @@
 //! tank's nodes to 0. Blocks of a boundary with itself and of walls with walls come ready from the model; only
 //! blocks between different boundaries of which one moves are computed: one division per pair of nodes.
 
+use crate::base::complex::{Complex, complex};
+use crate::base::features;
+use crate::base::lanes::LANES;
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{copy, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, complex};
+use crate::base::scalar::Real;
 use crate::fluid::configuration::{Configuration, fill_targets, relative, targets};
 use crate::fluid::near::preimage::Targets;
-use crate::fluid::near::{self, Near, pole};
-use crate::linear::lu::{Machine, Task};
+use crate::fluid::near::{Near, pole};
 use crate::model::ModelHead;
 use crate::model::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_term, fill_self_block};
-use crate::setup::validate::LEAST_NODES;
 
 /// 1/N_T in every entry of the tank's own block.
 fn completion<R: Real>(b: &BoundaryRecord<R>) -> R {
@@ -50,7 +52,7 @@ pub(crate) fn fill_walls<R: Real>(
                     put(g.data, at + k * n + i, w.re);
                 }
             }
-            if !near::HERE || source.table.is_empty() {
+            if !features::NEAR || source.table.is_empty() {
                 continue;
             }
             let (turn, shift) = relative(target.pose, b.pose);
@@ -169,6 +171,7 @@ struct PoleVelocity<'a, 'b, R> {
 }
 
 impl<R: Real> Task for PoleVelocity<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let PoleVelocity { near, j, first, table, scale, w, f: [fx, fy], h: [hx, hy], out } = self;
@@ -199,6 +202,7 @@ struct BlockColumns<'a, 'b, R> {
 }
 
 impl<R: Real> Task for BlockColumns<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let (ready, len) = self.parts;
@@ -271,35 +275,3 @@ pub(crate) fn induced_velocity<R: Real>(
         }
     }
 }
-
-/// Sum of lanes, by halves.
-#[inline(always)]
-pub(crate) fn sum_of<R: Real>([a, b, c, d, e, f, g, h]: [R; LANES]) -> R {
-    let halves = [a + e, b + f, c + g, d + h];
-    let [a, b, c, d] = halves;
-    (a + c) + (b + d)
-}
-
-/// A vector of lanes; the missing ones are filled.
-#[inline(always)]
-pub(crate) fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
-    from.first_chunk().copied().unwrap_or_else(|| {
-        let mut lanes = [fill; LANES];
-        copy(&mut lanes, from);
-        lanes
-    })
-}
-
-/// Writes as many lanes as there is room for.
-#[inline(always)]
-pub(crate) fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
-    match to.first_chunk_mut() {
-        Some(to) => *to = lanes,
-        None => copy(to, &lanes),
-    }
-}
-
-/// Lanes of the sums over targets.
-pub(crate) const LANES: usize = 8;
-// What fills no vector is done again together with nodes before it.
-const _: () = assert!(LANES <= LEAST_NODES);

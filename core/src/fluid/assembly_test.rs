@@ -2,7 +2,8 @@
 
 #![allow(clippy::indexing_slicing)]
 extern crate std;
-use crate::base::scalar::{Complex, Real, cabs, complex};
+use crate::base::complex::{Complex, cabs, complex};
+use crate::base::scalar::Real;
 use crate::dynamics::evaluation::configuration;
 use crate::fluid::assembly::assemble;
 use crate::fluid::configuration::{Configuration, Poses};

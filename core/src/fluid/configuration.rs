@@ -1,7 +1,8 @@
 //! One configuration of a scene as an evaluation sees it: where every boundary is and which nodes it has.
 
+use crate::base::complex::{Complex, complex};
 use crate::base::memory::{copy, part, part_mut};
-use crate::base::scalar::{Complex, Real, complex};
+use crate::base::scalar::Real;
 use crate::fluid::near::{Near, Preimage};
 use crate::geometry::curve::OutlineView;
 use crate::geometry::pose::Pose;

@@ -1,12 +1,13 @@
 //! Distances between boundaries: the smallest gap, overlap, and motion that could have jumped across.
 
+use crate::base::complex::{Complex, cabs, cis, complex, dot, perp};
+use crate::base::lanes::LANES;
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{at, copy};
-use crate::base::scalar::{Complex, Real, cabs, cis, complex, dot, perp};
+use crate::base::scalar::Real;
 use crate::base::status::Place;
-use crate::fluid::assembly::LANES;
 use crate::fluid::configuration::{Poses, targets};
 use crate::geometry::pose::Pose;
-use crate::linear::lu::{Machine, Task};
 use crate::model::Model;
 use crate::model::boundary::{BoundaryRecord, Nodes};
 
@@ -169,6 +170,7 @@ struct Closest<'a, 'b, R> {
 }
 
 impl<R: Real> Task for Closest<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         for (i, z) in targets(&self.a.nodes, self.a.pose, self.b.pose).enumerate() {

@@ -3,13 +3,15 @@
 //! Both directions of a pair need 1/(Γ − z)² of the same differences, up to the turn between the two frames: unless there are pole
 //! terms, a pair is visited once, with one division per pair of nodes.
 
+use crate::base::complex::{Complex, complex};
+use crate::base::features;
+use crate::base::lanes::{LANES, lanes, sum_of};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{part, part_mut};
-use crate::base::scalar::{Complex, Real, complex};
+use crate::base::scalar::Real;
 use crate::dynamics::christoffel::{PairScratch, Relative, add_pose_sums, pose_sums};
-use crate::fluid::assembly::{LANES, add_pole_velocity, lanes, sum_of};
+use crate::fluid::assembly::add_pole_velocity;
 use crate::fluid::configuration::Configuration;
-use crate::fluid::near::HERE;
-use crate::linear::lu::{Machine, Task};
 use crate::model::boundary::{BoundaryRecord, Nodes};
 
 /// What [`pair_pass`] fills: two vectors of length N and three reals per link.
@@ -56,7 +58,7 @@ pub(crate) fn pair_pass<R: Real>(
             add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
         };
         let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
-        let poles = HERE && (has_poles(c, &a, j) || has_poles(c, &b, i));
+        let poles = features::NEAR && (has_poles(c, &a, j) || has_poles(c, &b, i));
         let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
         if poles {
             // A pole term cancels against the plain rule: both must be of the same rounded differences.
@@ -148,6 +150,7 @@ struct Pair<'a, 'b, 'c, R, const BOTH: bool> {
 }
 
 impl<R: Real, const BOTH: bool> Task for Pair<'_, '_, '_, R, BOTH> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let Pair { a, b, place: [z0, z1], z: [zx, zy] } = self;
@@ -274,6 +277,7 @@ struct End<'a, 'b, 'c, R> {
 }
 
 impl<R: Real> Task for End<'_, '_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let Side { rate: [v0, v1], nodes, weight, h: [hx, hy], .. } = self.side;

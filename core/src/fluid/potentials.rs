@@ -5,14 +5,16 @@
 //! ψ = u + X v its potential on the boundary. The added mass is Bᵀ ψ; its transpose costs no further solve of
 //! its own: M_hᵀ v = Xᵀ (B v − 2 λ) with Aᵀ λ = B v.
 
+use crate::base::complex::{Complex, complex, dot};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{at, axpy, inner, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, complex, dot};
+use crate::base::scalar::Real;
 use crate::base::status::Result;
 use crate::dynamics::articulation::{put_three, twist_of};
 use crate::fluid::assembly::assemble;
 use crate::fluid::configuration::Configuration;
 use crate::geometry::pose::Twist;
-use crate::linear::lu::{Factors, Machine, Task, factor, factor_further};
+use crate::linear::lu::{Factors, factor, factor_further};
 use crate::model::boundary::Nodes;
 
 /// Three reals per link, world to link frame (linear parts turned).
@@ -119,6 +121,7 @@ struct Momenta<'a, 'b, R> {
 }
 
 impl<R: Real> Task for Momenta<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let (n, h) = (self.nodes, self.nodes.step);

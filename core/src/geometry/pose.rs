@@ -1,6 +1,7 @@
 //! Rigid placements and velocities of the plane.
 
-use crate::base::scalar::{Complex, Real, cis, complex, perp};
+use crate::base::complex::{Complex, cis, complex, perp};
+use crate::base::scalar::Real;
 
 /// Placement of a frame: `x_world = origin + turn · x_frame`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,15 +6,18 @@
 //! W_ik = h Γ'_k/(Γ_k − Γ_i) − (−1)^(k−i) (h/2) cot((s_k − s_i)/2), W_ii = h Γ''_i/(2Γ'_i); the cotangent is real
 //! and matters only for Re G.
 
+use crate::base::complex::{Complex, complex, dot};
+use crate::base::features;
+use crate::base::machine::Machine;
 use crate::base::memory::{part, part_mut, put, take};
-use crate::base::scalar::{Complex, Real, complex, dot};
+use crate::base::scalar::Real;
 use crate::base::status::{Place, Result, Status};
 use crate::fluid::near::preimage::{Source, Targets};
-use crate::fluid::near::{self, Preimage, pole};
+use crate::fluid::near::{Preimage, pole};
 use crate::geometry::curve::{Curve, Outline, OutlineView};
 use crate::geometry::grading::Ladder;
 use crate::geometry::pose::Pose;
-use crate::linear::lu::{Factors, Machine, factor};
+use crate::linear::lu::{Factors, factor};
 
 /// One boundary of the fluid.
 #[derive(Clone, Copy, Debug)]
@@ -176,7 +179,7 @@ impl<R: Real> BoundaryRecord<R> {
     }
     /// Cosines and sines of the pole terms (empty for the plain rule).
     pub(crate) fn table<'a>(&self, store: &'a [R]) -> &'a [R] {
-        if near::HERE { part(store, self.table_at, self.table_len) } else { &[] }
+        if features::NEAR { part(store, self.table_at, self.table_len) } else { &[] }
     }
     /// The boundary with its own nodes as the source of poles.
     pub(crate) fn source<'a>(&'a self, store: &'a [R]) -> Source<'a, R> {
@@ -252,8 +255,8 @@ pub(crate) fn write_nodes<R: Real>(
         for (c, value) in values.into_iter().enumerate() {
             put(data, c * n + k, value);
         }
-        reach = reach.max(crate::base::scalar::cabs(x));
-        speed = speed.max(crate::base::scalar::cabs(node.dx));
+        reach = reach.max(crate::base::complex::cabs(x));
+        speed = speed.max(crate::base::complex::cabs(node.dx));
         k += 1;
     })?;
     Ok((reach, speed))
@@ -267,7 +270,7 @@ pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R
     record.spacing = speed * R::TAU / R::count(n.max(1));
     // The outline may bulge beyond its nodes by at most half a spacing.
     record.reach = reach + record.spacing * R::HALF;
-    if near::HERE && record.table_len > 0 {
+    if features::NEAR && record.table_len > 0 {
         pole::fill_table(n, part_mut(store, record.table_at, record.table_len));
     }
     if reach.is_finite() && speed.is_finite() { Ok(()) } else { Err(Status::NotFinite.into()) }
@@ -348,7 +351,7 @@ pub(crate) fn add_flank_terms<R: Real>(
     matrix: &mut Block<'_, R>,
     regular: &mut Block<'_, R>,
 ) {
-    if !near::HERE || source.table.is_empty() {
+    if !features::NEAR || source.table.is_empty() {
         return;
     }
     let (turn, shift) = (complex(R::one(), R::zero()), Complex::default());
@@ -375,7 +378,7 @@ pub(crate) fn fill_rotation_potential<R: Real>(
         let pivots = take(&mut rest, m)?;
         let data = take(&mut rest, 7 * m)?;
         let table = take(&mut rest, if record.table_len > 0 { 4 * m } else { 0 })?;
-        if near::HERE && !table.is_empty() {
+        if features::NEAR && !table.is_empty() {
             pole::fill_table(m, table);
         }
         let view = record.view(store);
@@ -428,12 +431,12 @@ fn fourier_modes<R: Real>(samples: &[R], modes: &mut [R]) {
     let count = R::count(samples.len().max(1));
     let half = samples.len() / 2;
     for (m, pair) in modes.as_chunks_mut::<2>().0.iter_mut().enumerate() {
-        let turn = crate::base::scalar::cis(R::TAU * R::count(m) / count);
+        let turn = crate::base::complex::cis(R::TAU * R::count(m) / count);
         let (mut power, mut sum) = (complex(R::one(), R::zero()), Complex::<R>::default());
         for (k, f) in samples.iter().enumerate() {
             // The power is refreshed so that rounding does not pile up.
             if k % 16 == 0 {
-                power = crate::base::scalar::cis(R::TAU * R::count(m * k % samples.len().max(1)) / count);
+                power = crate::base::complex::cis(R::TAU * R::count(m * k % samples.len().max(1)) / count);
             }
             sum += power * *f;
             power *= turn;

@@ -7,7 +7,9 @@ pub(crate) mod boundary;
 pub(crate) mod plan;
 pub(crate) mod signal;
 
-use crate::base::scalar::{Complex, Real};
+use crate::base::complex::Complex;
+use crate::base::features;
+use crate::base::scalar::Real;
 use crate::base::status::{Place, Status};
 use crate::model::boundary::{BoundaryRecord, Nodes};
 pub use crate::model::plan::Formulation;
@@ -231,7 +233,7 @@ impl<'a, R: Real> Model<'a, R> {
     }
     /// Tables of nodes for points close to an outline (empty: plain rule or no repulsion).
     pub(crate) fn close_range(&self) -> &'a [R] {
-        let len = if crate::fluid::near::HERE { self.head.close_range_len } else { 0 };
+        let len = if features::NEAR { self.head.close_range_len } else { 0 };
         crate::base::memory::part(self.store, self.head.close_range_at, len)
     }
     pub(crate) fn joints(&self) -> impl Iterator<Item = &'a CoordinateRecord<R>> + use<'a, R> {

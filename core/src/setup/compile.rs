@@ -1,9 +1,9 @@
 //! From a scene to a model: the set-up that happens once.
 
+use crate::base::features;
 use crate::base::memory::{part, part_mut};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::fluid::near;
 use crate::model::boundary::BoundaryRecord;
 use crate::model::plan::Plan;
 use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead, NearDims};
@@ -95,11 +95,11 @@ impl<'a, R: Real> Model<'a, R> {
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
-        if near::HERE && layout.close_range_len > 0 {
+        if features::NEAR && layout.close_range_len > 0 {
             let tables = part_mut(store, layout.close_range_at, layout.close_range_len);
             crate::dynamics::forces::close_range::fill_tables(tables, scratch)?;
         }
-        if near::HERE && traits.graded && head.plan.walls > 1 {
+        if features::NEAR && traits.graded && head.plan.walls > 1 {
             let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
             grade_walls(walls, store, scratch)?;
         }

@@ -1,9 +1,10 @@
 //! What a scene requires and where everything goes in a model's store: the same lines count and place.
 
+use crate::base::features;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::forces::close_range;
-use crate::fluid::near::{self, LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
+use crate::fluid::near::{LADDER_LIST, MOST_LADDERS, pole, rung_allowance};
 use crate::geometry::grading::grading_len;
 use crate::geometry::pose::Pose;
 use crate::model::Formulation;
@@ -263,7 +264,7 @@ impl Traits {
             Formulation::Velocity
         };
         let repels = settings.repulsion.is_some_and(|r| r.epsilon != R::zero());
-        let tables = near::HERE && settings.quadrature == Quadrature::Graded && (fluid || repels);
+        let tables = features::NEAR && settings.quadrature == Quadrature::Graded && (fluid || repels);
         let graded = tables && wall_count(scene) + links > 1;
         Traits { fluid, circulation, formulation, graded, tables, repels }
     }

@@ -1,7 +1,9 @@
 //! Fills a model's records and store: boundaries, links, coordinates.
 
+use crate::base::complex::{Complex, cabs, complex};
+use crate::base::features;
 use crate::base::memory::{copy, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, cabs, complex};
+use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::fluid::contact::Placed;
 use crate::fluid::near::{self, LADDER_LIST, ladders};
@@ -47,7 +49,7 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         }
         let own = part_mut(store, record.store_at, record.store_len);
         (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
-        if near::HERE && traits.graded {
+        if features::NEAR && traits.graded {
             list_ladders(record, &item.shape, store).map_err(here)?;
         }
         let own = part(store, record.store_at, record.store_len);

@@ -1,12 +1,12 @@
 //! What a scene must satisfy before anything is built: every refusal names the place, the quantity and its value.
 
+use crate::base::features;
+use crate::base::lanes::LEAST_NODES;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::scene::{Description, Drive, JointKind, Link, Mass, Quadrature};
 use crate::setup::layout::{each_link, items};
 
-/// Least nodes of a boundary.
-pub(crate) const LEAST_NODES: usize = 8;
 /// Most nodes allowed on one boundary.
 const MOST_NODES: usize = 1 << 16;
 
@@ -21,7 +21,7 @@ fn at_least_zero<R: Real>(what: &'static str, x: R) -> Result<()> {
 
 pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
     let settings = scene.settings();
-    if !crate::fluid::near::HERE && settings.quadrature == Quadrature::Graded {
+    if !features::NEAR && settings.quadrature == Quadrature::Graded {
         return Err(Error::new(Status::Unsupported).of("quadrature", f64::NAN));
     }
     at_least_zero("density", settings.fluid_density)?;

@@ -150,7 +150,7 @@ impl<R: Real> Sim<'_, R> {
             circulation::impulse(c, &flow!(self.work), self.work.spare);
         } else {
             let [x, y, a] = model.head.lone_impulse;
-            put_three(self.work.spare, 0, c.pose(0).turned(crate::base::scalar::complex(x, y)), a);
+            put_three(self.work.spare, 0, c.pose(0).turned(crate::base::complex::complex(x, y)), a);
         }
         for (_, b, _) in model.each_boundary() {
             let Some(link) = b.link else { continue };

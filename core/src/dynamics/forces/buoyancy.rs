@@ -33,7 +33,7 @@ pub(crate) fn add_gradient<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, o
 pub(crate) fn kinetic_bodies<R: Real>(model: &Model<'_, R>, qd: &[R]) -> R {
     model.links.iter().enumerate().fold(R::zero(), |sum, (i, link)| {
         let v = twist_of(qd, i);
-        sum + (link.mass * crate::base::scalar::dot(v.linear, v.linear) + link.inertia * v.angular * v.angular)
+        sum + (link.mass * crate::base::complex::dot(v.linear, v.linear) + link.inertia * v.angular * v.angular)
             * R::HALF
     })
 }

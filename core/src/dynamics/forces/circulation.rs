@@ -7,8 +7,9 @@
 //! right-hand side of the same matrix. Energy T_c = ½ (Ψ·dn − φ·β), impulse P = Bᵀφ − Sᵀdn with
 //! S = (y, −x, −|X|²/2). Everything here is per unit density of the fluid.
 
+use crate::base::complex::{Complex, cln, complex, csqrt, dot, perp};
 use crate::base::memory::{add, at, axpy, inner, part, part_mut};
-use crate::base::scalar::{Complex, Real, cln, complex, csqrt, dot, perp};
+use crate::base::scalar::Real;
 use crate::dynamics::articulation::{put_three, twist_of};
 use crate::dynamics::christoffel::{
     Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates,

@@ -4,8 +4,9 @@
 //! outline's own nodes. A ladder centred at Re t* resolves it; its nodes depend on the scale alone, up to a shift, so they
 //! are tabulated for the scales 3^(−q), of which the next finer one is taken.
 
+use crate::base::complex::{Complex, cabs, complex};
 use crate::base::memory::{part, put};
-use crate::base::scalar::{Complex, Real, cabs, complex};
+use crate::base::scalar::Real;
 use crate::base::status::Result;
 use crate::geometry::curve::Curve;
 use crate::geometry::grading::{Grading, Ladder, grading_len, write_grading};

@@ -3,7 +3,8 @@
 //! and its gradient
 //! ∂V/∂q_a = −α ε Σ ∬ |x − x'|^(−α−2) (x − x')·w_a ds ds'. (The printed (5.2) is wrong: docs/physics.md.) O(N²).
 
-use crate::base::scalar::{Complex, Real, cabs, cis, complex};
+use crate::base::complex::{Complex, cabs, cis, complex};
+use crate::base::scalar::Real;
 use crate::dynamics::christoffel::add_three;
 use crate::dynamics::forces::close_range;
 use crate::fluid::configuration::{Configuration, targets};

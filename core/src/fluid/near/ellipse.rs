@@ -1,14 +1,15 @@
 //! Preimages on an ellipse, in closed form: both roots of (a + b) W/2 + (a − b)/(2W) = z, W = e^(it), many at a time.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
+use crate::base::complex::{Complex, complex};
 use crate::base::elementary::{atan2, cln_1p, csqrt, product, quotient, sin_cos};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{at, put};
-use crate::base::scalar::{Complex, Real, complex};
+use crate::base::scalar::Real;
 use crate::fluid::near::Preimage;
 use crate::fluid::near::preimage::{Roots, Source, Targets, reach};
 use crate::geometry::curve::Ellipse;
 use crate::geometry::grading::{LANES, Offset};
-use crate::linear::lu::{Machine, Task};
 
 type Pairs<R> = [[R; LANES]; 2];
 
@@ -47,6 +48,7 @@ struct Pending<R> {
 }
 
 impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for OnEllipse<'_, '_, R, F> {
+    type Output = ();
     #[inline(always)]
     fn run(mut self) {
         let zero = [[R::zero(); LANES]; 2];

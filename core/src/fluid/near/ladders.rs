@@ -4,8 +4,9 @@
 //! curvatures k, k' towards the fluid, D = k k' d + k + k' and f = (k d + 2)(k' d + 2)(k k' d + 2 (k + k')), they lie
 //! c = √(d f/4)/D to both sides of a point between the curves. A ladder resolves the distance of the farther one.
 
+use crate::base::complex::{Complex, cabs};
 use crate::base::memory::{at, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, cabs};
+use crate::base::scalar::Real;
 use crate::fluid::configuration::Poses;
 use crate::fluid::contact::{Placed, apart, closest_points, foot};
 use crate::fluid::near::preimage::wrapped;

@@ -11,6 +11,7 @@ pub(crate) mod preimage;
 pub(crate) mod regrade;
 mod search;
 
+use crate::base::features;
 use crate::base::memory::{at, part};
 use crate::base::scalar::Real;
 use crate::base::status::Result;
@@ -58,7 +59,7 @@ impl<'a, R: Real> Near<'a, R> {
     #[inline]
     pub(crate) fn rungs(&self, boundary: usize) -> Option<usize> {
         let count = self.ladders.get(boundary * LADDER_LIST + 1).copied()?;
-        (HERE && count >= R::zero()).then(|| count.to_f64() as usize)
+        (features::NEAR && count >= R::zero()).then(|| count.to_f64() as usize)
     }
 
     pub(crate) fn nodes(&self, b: &BoundaryRecord<R>) -> Nodes<'a, R> {
@@ -82,7 +83,7 @@ impl<R: Real> NearMut<'_, R> {
     /// # Errors
     /// `Internal` if a node could not be placed to rounding.
     pub(crate) fn prepare_here(&mut self, model: &Model<'_, R>, poses: Poses<'_, R>) -> Result<()> {
-        if !HERE || self.ladders.is_empty() {
+        if !features::NEAR || self.ladders.is_empty() {
             return Ok(());
         }
         ladders::place(model, poses, self.ladders);
@@ -91,9 +92,6 @@ impl<R: Real> NearMut<'_, R> {
         Ok(())
     }
 }
-
-/// Whether this build has graded quadrature (feature `near`). Where it has not, this constant takes its code out.
-pub(crate) const HERE: bool = cfg!(feature = "near");
 
 /// Number of ladders in a list.
 pub(crate) fn ladder_count<R: Real>(list: &[R]) -> usize {

@@ -9,10 +9,11 @@
 //! of a sum needs no transcendental function per node: (c − τ s)/(s + τ c) with τ = tan(x/2), c + is = e^(imh/2).
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
+use crate::base::complex::{Complex, complex};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::{copy, part};
-use crate::base::scalar::{Complex, Real, complex};
+use crate::base::scalar::Real;
 use crate::fluid::near::Preimage;
-use crate::linear::lu::{Machine, Task};
 
 /// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
 pub(crate) fn table_len(nodes: usize) -> Option<usize> {
@@ -126,6 +127,7 @@ struct Weights<'a, R> {
 }
 
 impl<R: Real> Task for Weights<'_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let f = self.row.factor * self.turn.conj() * self.out.scale;

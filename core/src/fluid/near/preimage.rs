@@ -5,9 +5,10 @@
 //! kernel's reciprocal.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
+use crate::base::complex::{Complex, cabs, cln, complex, dot};
 use crate::base::elementary::{exp_m1, quotient, sin_cos};
 use crate::base::memory::{at, copy, part_mut};
-use crate::base::scalar::{Complex, Real, cabs, cln, complex, dot};
+use crate::base::scalar::Real;
 use crate::fluid::configuration::{Configuration, Poses, relative};
 use crate::fluid::near::{NearMut, PREIMAGES};
 use crate::geometry::curve::{Curve, OutlineView};

@@ -53,7 +53,7 @@ fn fill_potential<R: Real>(b: &BoundaryRecord<R>, store: &[R], nodes: &mut [R]) 
     for k in 0..n {
         let column = |c: usize| crate::base::memory::at(nodes, c * n + k);
         let (x, y, t) = (column(0), column(1), column(4));
-        let chi = b.rotation_potential(store, crate::base::scalar::complex(x, y), || own.jet(t)[0]);
+        let chi = b.rotation_potential(store, crate::base::complex::complex(x, y), || own.jet(t)[0]);
         put(nodes, 7 * n + k, chi);
     }
 }

@@ -1,12 +1,13 @@
 //! Preimages on a curve without closed form: Newton's method, and a choice among its roots by a sum that is known.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
+use crate::base::complex::{Complex, cabs, complex, csin_cos, dot};
+use crate::base::machine::{Machine, Task};
 use crate::base::memory::at;
-use crate::base::scalar::{Complex, Real, cabs, complex, csin_cos, dot};
+use crate::base::scalar::Real;
 use crate::fluid::near::pole::{self, LANES, load};
 use crate::fluid::near::preimage::{Preimage, Roots, Source, Targets, wrapped};
 use crate::geometry::grading::Offset;
-use crate::linear::lu::{Machine, Task};
 
 /// Up to two preimages.
 type Found<R> = [Option<Preimage<R>>; 2];
@@ -19,6 +20,7 @@ struct Search<'a, 'b, R, F> {
 }
 
 impl<R: Real, F: FnMut(usize, Preimage<R>)> Task for Search<'_, '_, R, F> {
+    type Output = ();
     #[inline(always)]
     fn run(mut self) {
         let targets = self.targets;

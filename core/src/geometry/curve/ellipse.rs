@@ -1,6 +1,7 @@
 //! Ellipse about the origin, in the eccentric angle.
 
-use crate::base::scalar::{Complex, Real, complex, csin_cos, csqrt, perp};
+use crate::base::complex::{Complex, complex, csin_cos, csqrt, perp};
+use crate::base::scalar::Real;
 use crate::geometry::curve::AreaProperties;
 
 /// γ(t) = a cos t + i b sin t, with a, b > 0 in any order.

@@ -1,6 +1,7 @@
 //! Outline given by a finite Fourier sum: an entire function of the parameter.
 
-use crate::base::scalar::{Complex, Real, cexp, cexpm1, cis, complex, perp};
+use crate::base::complex::{Complex, cexp, cexpm1, cis, complex, perp};
+use crate::base::scalar::Real;
 
 /// γ(t) = Σ cⱼ e^(i kⱼ t), modes kⱼ = centre + stride (j − down) for j = 0, 1, ….
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,9 @@
 use super::polygon::{self, CORNER};
 use super::polyline::{area, boxes_len, cross, crossing, point, straight};
 use super::{Curve, Ellipse, Kind, Outline, through_points};
+use crate::base::complex::{Complex, cabs, dot};
 use crate::base::memory::{part_mut, put};
-use crate::base::scalar::{Complex, Real, cabs, dot};
+use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::geometry::grading::{Ladder, TOP, grading_len, write_grading};
 use crate::scene::Shape;

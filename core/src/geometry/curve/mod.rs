@@ -22,8 +22,9 @@ pub use ellipse::Ellipse;
 pub use fourier::Fourier;
 pub use polygon::{Polygon, SHARP};
 
+use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::memory::part;
-use crate::base::scalar::{Complex, Real, cabs, complex, dot};
+use crate::base::scalar::Real;
 use crate::base::status::Result;
 use crate::geometry::grading::{Grading, Ladder, write_fitting};
 use polygon::CORNER;

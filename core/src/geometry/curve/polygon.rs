@@ -5,8 +5,9 @@
 //! corner. A corner radius R (that of an arc) means r = R tan(T/4) / (2 ln 2 · 1.107 cos(T/2)) at the turn T, which
 //! adds the same mass as the arc does for T = 90°.
 
+use crate::base::complex::{Complex, cabs, cexp, cexpm1, cln_1p, complex, dot};
 use crate::base::memory::{part, part_mut, put};
-use crate::base::scalar::{Complex, Real, cabs, cexp, cexpm1, cln_1p, complex, dot};
+use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::geometry::curve::polyline::{after, area, boxes_len, cross, crossing, point, straight};
 use crate::geometry::grading::{Ladder, TOP};

@@ -1,7 +1,8 @@
 //! Tests on closed polylines: area, straightness, self-intersection.
 
+use crate::base::complex::{Complex, cabs, complex, dot, perp};
 use crate::base::memory::{at, put};
-use crate::base::scalar::{Complex, Real, cabs, complex, dot, perp};
+use crate::base::scalar::Real;
 
 /// Segments that share a bounding box.
 const BLOCK: usize = 16;

@@ -1,7 +1,7 @@
 #![allow(clippy::indexing_slicing)]
 extern crate std;
 use super::*;
-use crate::base::scalar::cis;
+use crate::base::complex::cis;
 use crate::base::status::{Error, Status};
 use crate::scene::Shape;
 use std::vec::Vec;

@@ -5,8 +5,9 @@
 //! Both the spline's samples and the Gaussian live on a grid of 16 n points; as the Gaussian of width σ = π/n has
 //! died away at the grid's Nyquist mode, convolving on the grid is exact to rounding.
 
+use crate::base::complex::{Complex, cabs};
 use crate::base::memory::{add, at, axpy, buffers, part, part_mut, put};
-use crate::base::scalar::{Complex, Real, cabs};
+use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 use crate::geometry::curve::polyline::{after, boxes_len, point};
 
@@ -218,7 +219,7 @@ fn transform<R: Real>(samples: &[R], roots: &mut [R], top: usize, modes: &mut [R
         let mut turn = 0;
         let mut sum = Complex::default();
         for &[re, im] in samples.as_chunks::<2>().0 {
-            sum += crate::base::scalar::complex(re, im) * point(roots, turn);
+            sum += crate::base::complex::complex(re, im) * point(roots, turn);
             turn += stride;
             if turn >= m {
                 turn -= m;
@@ -248,7 +249,7 @@ fn transform<R: Real>(samples: &[R], _roots: &mut [R], top: usize, modes: &mut [
 mod tests {
     extern crate std;
     use super::*;
-    use crate::base::scalar::complex;
+    use crate::base::complex::complex;
     use crate::geometry::curve::Fourier;
     use std::vec;
     use std::vec::Vec;
@@ -260,8 +261,9 @@ mod tests {
     #[test]
     fn splines_are_a_partition_of_unity() {
         for n in [3, 4, 7, 20] {
-            let p =
-                |k: usize| crate::base::scalar::cis(f64::TAU * k as f64 / n as f64 + 0.4 * (k as f64).sin() / n as f64);
+            let p = |k: usize| {
+                crate::base::complex::cis(f64::TAU * k as f64 / n as f64 + 0.4 * (k as f64).sin() / n as f64)
+            };
             let mut knots = vec![f64::NAN; n + 2 * EXTRA];
             write_knots(p, n, &mut knots);
             assert!(knots.windows(2).all(|w| w[0] < w[1]), "{knots:?}");
@@ -301,7 +303,7 @@ mod tests {
         for j in 0..=2 * top {
             let k = j as f64 - top as f64;
             let sum = (0..m).fold(Complex::default(), |sum: Complex<f64>, i| {
-                sum + point(&samples, i) * crate::base::scalar::cis(-f64::TAU * k * i as f64 / m as f64)
+                sum + point(&samples, i) * crate::base::complex::cis(-f64::TAU * k * i as f64 / m as f64)
             });
             assert!(cabs(sum - point(&modes, j)) < 1e-13 * m as f64);
         }

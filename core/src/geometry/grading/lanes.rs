@@ -4,9 +4,9 @@
 
 use super::Grading;
 use crate::base::elementary::{atan2, catan, ln_1p, nearest, product, quotient, sin_cos, small_sine};
+use crate::base::machine::{Machine, Task};
 use crate::base::scalar::Real;
 use crate::base::status::Result;
-use crate::linear::lu::{Machine, Task};
 
 /// Parameters that are treated together.
 pub(crate) const LANES: usize = 16;
@@ -190,6 +190,7 @@ struct Place<'a, 'b, R> {
 }
 
 impl<R: Real> Task for Place<'_, '_, R> {
+    type Output = ();
     #[inline(always)]
     fn run(self) {
         let Place { grading, s, start: [mut at, mut t], out } = self;

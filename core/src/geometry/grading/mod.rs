@@ -235,7 +235,7 @@ impl<'a, R: Real> Grading<'a, R> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::base::scalar::{Complex, cabs, cis, complex, csin_cos};
+    use crate::base::complex::{Complex, cabs, cis, complex, csin_cos};
     use std::vec;
     use std::vec::Vec;
 

@@ -1,8 +1,9 @@
 //! Elimination of a block of eight columns, for a machine's own vectors: in one pass over its rows where partial pivoting
 //! exchanges nothing, else column by column with exchanges.
 
-use super::tile::{Lanes, begin, halves, store};
-use super::{BLOCK, Rows, exchange};
+use super::rows::{BLOCK, Rows, exchange};
+use super::tile::{begin, halves, store};
+use crate::base::machine::Lanes;
 use crate::base::memory::{at, part, part_mut};
 use crate::base::scalar::Real;
 
@@ -81,7 +82,7 @@ fn columns_of<R>(block: &mut [R], ld: usize) -> Option<[&mut [R]; BLOCK]> {
 /// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
 #[inline(always)]
 pub(super) fn divide<R: Real, V: Lanes<R>>(block: &mut [R], ld: usize, rows: Rows) {
-    let Some(columns) = columns_of(block, ld) else { return super::portable::divide(block, ld, rows) };
+    let Some(columns) = columns_of(block, ld) else { return super::divide::divide(block, ld, rows) };
     let (mut tops, mut inverses) = ([[R::zero(); BLOCK]; BLOCK], [R::zero(); BLOCK]);
     let mut below: [&mut [R]; BLOCK] = [&mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut [], &mut []];
     let parts = tops.iter_mut().zip(&mut inverses).zip(&mut below).zip(columns);

@@ -7,39 +7,26 @@
 //! `triangle`, or `portable`).
 //! Cost: 2n³/3 for [`factor`], 2n² for each solve.
 
+mod divide;
 #[cfg(target_arch = "x86_64")]
 mod eliminate;
 mod kernel;
 mod portable;
+mod rows;
 #[cfg(target_arch = "x86_64")]
 mod tile;
 #[cfg(target_arch = "x86_64")]
 mod triangle;
 
-use crate::base::memory::{at, part, part_mut, put};
+use crate::base::machine::Machine;
+use crate::base::memory::{part, part_mut};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
-use kernel::{Kernel, Level};
-
-pub use kernel::Vectors;
-pub(crate) use kernel::{Level as Machine, Task};
+use kernel::Kernel;
+use rows::{BLOCK, Rows, exchange};
 
 /// Columns of the factors that one pass over the right columns takes: what a row of tiles reads of them fits the first cache.
 const DEPTH: usize = 128;
-
-/// Side of a triangle that is solved at once in vectors, and columns that are eliminated together there.
-const BLOCK: usize = 8;
-
-/// Which rows of the right columns a product C ← C − A B reads (B) and which it changes (C); A is what stands left of C.
-#[derive(Clone, Copy)]
-struct Rows {
-    /// First row of C.
-    to: usize,
-    /// Rows of C.
-    count: usize,
-    /// First row of B.
-    from: usize,
-}
 
 /// A factorized matrix: unit lower and upper triangle in place, and the row exchanged at each step.
 pub struct Factors<'a, R> {
@@ -55,11 +42,11 @@ pub struct Factors<'a, R> {
 macro_rules! with_kernel {
     ($level:expr, $kernel:ident => $run:expr) => {
         match $level {
-            Level::Portable($kernel) => $run,
+            Machine::Portable($kernel) => $run,
             #[cfg(target_arch = "x86_64")]
-            Level::Avx2($kernel) => $run,
+            Machine::Avx2($kernel) => $run,
             #[cfg(target_arch = "x86_64")]
-            Level::Avx512($kernel) => $run,
+            Machine::Avx512($kernel) => $run,
         }
     };
 }
@@ -85,7 +72,7 @@ pub(crate) fn factor_further<R: Real>(
     pivots: &mut [R],
     begun: impl Fn(usize) -> usize,
 ) -> Result<R> {
-    with_kernel!(Level::here(), kernel => factor_by(kernel, a, ld, n, done, pivots, begun))
+    with_kernel!(Machine::here(), kernel => factor_by(kernel, a, ld, n, done, pivots, begun))
 }
 
 fn factor_by<R: Real, K: Kernel<R>>(
@@ -216,13 +203,6 @@ fn exchange_all<R: Real>(columns: &mut [R], ld: usize, k: usize, pivots: &[R]) -
 }
 
 #[inline]
-fn exchange<R: Real>(column: &mut [R], i: usize, j: usize) {
-    let (x, y) = (at(column, i), at(column, j));
-    put(column, i, y);
-    put(column, j, x);
-}
-
-#[inline]
 fn row_of<R: Real>(pivot: R) -> usize {
     pivot.to_f64() as usize
 }
@@ -232,7 +212,7 @@ impl<R: Real> Factors<'_, R> {
     pub fn solve(&self, b: &mut [R]) {
         let b = part_mut(b, 0, self.pivots.len());
         exchange_all(b, self.ld, 0, self.pivots);
-        with_kernel!(Level::here(), kernel => {
+        with_kernel!(Machine::here(), kernel => {
             substitute(kernel, self.matrix(), self.ld, 0, b);
             substitute_back(kernel, self.matrix(), self.ld, 0, b);
         });
@@ -240,12 +220,12 @@ impl<R: Real> Factors<'_, R> {
 
     /// Solves U x = b in place for each column of `b`, which has the matrix's leading dimension or is one column.
     pub fn back_substitute(&self, b: &mut [R]) {
-        with_kernel!(Level::here(), kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
+        with_kernel!(Machine::here(), kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
     }
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transposed(&self, b: &mut [R]) {
-        with_kernel!(Level::here(), kernel => kernel.solve_transposed(self.lu, self.ld, self.pivots.len(), b));
+        with_kernel!(Machine::here(), kernel => kernel.solve_transposed(self.lu, self.ld, self.pivots.len(), b));
         for (c, row) in self.pivots.iter().enumerate().rev() {
             exchange(b, c, row_of(*row));
         }
@@ -317,7 +297,7 @@ mod tests {
     /// Factors by every set of instructions that the machine at hand has.
     fn factors_of_all<R: Real>(a: &[R], ld: usize, n: usize) -> Vec<(Vec<R>, Vec<R>)> {
         let mut all = Vec::new();
-        for level in Level::all() {
+        for level in Machine::all() {
             let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::zero(); n]);
             with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
             all.push((lu, pivots));
@@ -377,7 +357,7 @@ mod tests {
 
     #[test]
     fn a_factorization_continued_from_its_first_block_solves_the_system() {
-        for level in Level::all() {
+        for level in Machine::all() {
             for (n, done) in [(64, 0), (64, 24), (61, 13), (40, 39), (90, 51), (7, 3)] {
                 let ld = n + 3;
                 for a in [dominant(n, ld), random(n * ld, 4)] {

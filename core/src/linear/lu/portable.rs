@@ -2,7 +2,8 @@
 //! and which stays small on a microcontroller.
 
 use super::kernel::Kernel;
-use super::{Rows, exchange};
+use super::rows::{Rows, exchange};
+use crate::base::machine::Portable;
 use crate::base::memory::{at, inner, part, part_mut, put};
 use crate::base::scalar::Real;
 
@@ -11,10 +12,6 @@ const SMALL: usize = 64;
 
 /// Rows of a tile.
 const ROWS: usize = 4;
-
-/// Any machine.
-#[derive(Clone, Copy)]
-pub(crate) struct Portable;
 
 impl<R: Real> Kernel<R> for Portable {
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]) {
@@ -289,24 +286,6 @@ fn largest_of<R: Real>(y: &[R]) -> R {
         (m0, m1, m2, m3) = (larger(m0, *y0), larger(m1, *y1), larger(m2, *y2), larger(m3, *y3));
     }
     y.iter().fold(larger(larger(m0, m1), larger(m2, m3)), |m, y| larger(m, *y))
-}
-
-/// A ← A U⁻¹ in the rows `to ..` of a block, whose rows `from ..` hold U.
-pub(super) fn divide<R: Real>(block: &mut [R], ld: usize, rows: Rows) {
-    for c in 0..block.len().checked_div(ld).unwrap_or(0) {
-        let Some((done, rest)) = block.split_at_mut_checked(c * ld) else { return };
-        let column = part_mut(rest, 0, ld);
-        for (p, left) in done.chunks_exact(ld.max(1)).enumerate() {
-            let x = at(column, rows.from + p);
-            for (y, l) in part_mut(column, rows.to, rows.count).iter_mut().zip(part(left, rows.to, rows.count)) {
-                *y -= x * *l;
-            }
-        }
-        let inverse = R::one() / at(column, rows.from + c);
-        for y in part_mut(column, rows.to, rows.count) {
-            *y *= inverse;
-        }
-    }
 }
 
 #[cfg(test)]

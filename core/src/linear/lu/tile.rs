@@ -3,7 +3,8 @@
 //! Everything here is safe and inlined into the entry points of [`super::kernel`], which choose the vector type.
 //! Matrices are column-major with leading dimension `ld`.
 
-use super::Rows;
+use super::rows::Rows;
+use crate::base::machine::Lanes;
 use crate::base::memory::{part, part_mut};
 use crate::base::scalar::Real;
 
@@ -12,34 +13,6 @@ pub(super) const COLUMNS: usize = 4;
 
 /// Depth of a product from which on its tiles are worth fetching ahead.
 const FAR: usize = 64;
-
-/// A vector of a few rows of one column.
-pub trait Lanes<R>: Copy {
-    /// Rows.
-    const WIDTH: usize;
-    /// The same value in every row.
-    fn splat(x: R) -> Self;
-    /// The first rows of a slice, if it has them all.
-    fn load(from: &[R]) -> Option<Self>;
-    /// The first rows of a slice; 0 where it ends early.
-    fn begin(from: &[R]) -> Self;
-    /// Writes as many rows as the slice has.
-    fn store(self, to: &mut [R]);
-    /// `self − a b`.
-    fn minus_product(self, a: Self, b: Self) -> Self;
-    /// Sum of the rows.
-    fn sum(self) -> R;
-    /// The larger of `self` and |x|, row by row; `self` where x is NaN.
-    fn max_abs(self, x: Self) -> Self;
-    /// Asks for the memory of a slice's first element ahead of its use.
-    fn prefetch(from: &[R]);
-    /// Whether no row, all ≥ 0, exceeds 1.
-    fn within_one(self) -> bool;
-    /// One row.
-    fn row(self, i: usize) -> R;
-    /// The largest row.
-    fn largest(self) -> R;
-}
 
 /// C ← C − A B, where B and C are rows of the same columns `right` and do not overlap. `left` holds A's columns.
 #[inline(always)]

@@ -1,10 +1,11 @@
 //! Solves with triangles of at most eight rows, and with the transposed factors, for a machine's own vectors.
 
-use super::BLOCK;
-use super::tile::{COLUMNS, Lanes, begin, halves, store};
+use super::rows::BLOCK;
+use super::tile::{COLUMNS, begin, halves, store};
+use crate::base::lanes::{lanes, put_lanes};
+use crate::base::machine::Lanes;
 use crate::base::memory::{at, part, part_mut, put};
 use crate::base::scalar::Real;
-use crate::fluid::assembly::{lanes, put_lanes};
 
 /// Solves with the triangle in rows `k ..` of the columns `left` (at most [`BLOCK`]): the unit lower one, or the upper one.
 #[inline(always)]
