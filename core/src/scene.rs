@@ -347,3 +347,32 @@ impl<R: Real> Scene<'_, R> {
         }
     }
 }
+
+/// Every link with its body and place in the body.
+pub(crate) fn each_link<'a, R: Real, S: Description<R>>(
+    scene: &'a S,
+) -> impl Iterator<Item = (usize, usize, Link<'a, R>)> + Clone {
+    (0..scene.body_count())
+        .flat_map(move |b| (0..scene.link_count(b)).filter_map(move |l| Some((b, l, scene.link(b, l)?))))
+}
+
+/// The signal of every coordinate, in their order.
+pub(crate) fn motions<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Signal<'a, R>> + Clone {
+    (0..scene.body_count()).filter_map(move |b| Some((b, scene.body(b)?))).flat_map(move |(b, body)| {
+        let root = match body.root {
+            Root::Prescribed(signals) => signals,
+            Root::Free => [Signal::Constant(R::zero()); 3],
+        };
+        let joints = (0..scene.link_count(b)).filter_map(move |l| scene.link(b, l)?.joint);
+        root.into_iter().chain(joints.map(|j| match j.drive {
+            Drive::Locked(value) => Signal::Constant(value),
+            Drive::Motion(signal) => signal,
+            Drive::Torque { torque, .. } => torque,
+        }))
+    })
+}
+
+/// Number of fixed boundaries.
+pub(crate) fn wall_count<R: Real, S: Description<R>>(scene: &S) -> usize {
+    scene.obstacle_count() + usize::from(scene.tank().is_some())
+}

@@ -1,51 +1,36 @@
-//! What is compiled once for each scalar type, here, and not again in every crate that uses the library: everything with
-//! loops for the machine's own vectors.
-#![allow(private_interfaces)] // The trait is sealed by its only implementors.
+//! Functions with loops for the machine's own vectors, compiled once for each scalar type, here, and not again in every crate
+//! that uses the library.
 
-use crate::base::status::Result;
-use crate::dynamics::christoffel::PairScratch;
-use crate::fluid::configuration::{Configuration, Poses};
-use crate::fluid::near::preimage::{Source, Targets};
-use crate::fluid::near::{NearMut, Preimage};
-use crate::fluid::pair_pass::{PassResult, pair_pass};
-use crate::fluid::potentials::BoundarySystem;
-use crate::geometry::grading::Grading;
-use crate::model::Model;
-
-macro_rules! compiled {
-    ($( fn $name:ident ($($arg:ident: $type:ty),*) $(-> $out:ty)? = $run:expr; )*) => {
-        /// Calls of the generic functions of the same purpose.
-        pub trait Compiled: Sized {
-            $( #[doc(hidden)] fn $name($($arg: $type),*) $(-> $out)?; )*
+/// Declares generic functions `fn name['a, 'b: 'a](argument: Type<'a, 'b, R>, …) -> Output { … }` (any lifetimes; `R` is the
+/// scalar, of which the output knows nothing) whose bodies are compiled in this crate, once for each scalar.
+macro_rules! once {
+    ($(
+        $(#[$doc:meta])*
+        $vis:vis fn $name:ident[$($life:lifetime $(: $longer:lifetime)?),*]($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block
+    )*) => { $(
+        $(#[$doc])*
+        #[inline]
+        $vis fn $name<$($life $(: $longer)?,)* R: Real>($($arg: $type),*) $(-> $out)? {
+            use $crate::base::scalar::{Of, Which};
+            struct Arguments<$($life),*>($(core::marker::PhantomData<&$life ()>),*);
+            impl<$($life $(: $longer)?),*> Of for Arguments<$($life),*> {
+                type With<R: Real> = ($($type,)*);
+            }
+            #[inline(always)]
+            fn body<$($life $(: $longer)?,)* R: Real>(($($arg,)*): ($($type,)*)) $(-> $out)? $body
+            #[inline(never)]
+            fn double<$($life $(: $longer)?),*>(all: <Arguments<$($life),*> as Of>::With<f64>) $(-> $out)? {
+                body::<f64>(all)
+            }
+            #[inline(never)]
+            fn single<$($life $(: $longer)?),*>(all: <Arguments<$($life),*> as Of>::With<f32>) $(-> $out)? {
+                body::<f32>(all)
+            }
+            match R::which::<Arguments<$($life),*>>(($($arg,)*)) {
+                Which::Double(all) => double(all),
+                Which::Single(all) => single(all),
+            }
         }
-        compiled!(@for f64, $( fn $name ($($arg: $type),*) $(-> $out)? = $run; )*);
-        compiled!(@for f32, $( fn $name ($($arg: $type),*) $(-> $out)? = $run; )*);
-    };
-    (@for $t:ty, $( fn $name:ident ($($arg:ident: $type:ty),*) $(-> $out:ty)? = $run:expr; )*) => {
-        impl Compiled for $t {
-            $( #[inline(never)] fn $name($($arg: $type),*) $(-> $out)? { $run } )*
-        }
-    };
+    )* };
 }
-
-compiled! {
-    fn prepare(near: &mut NearMut<'_, Self>, model: &Model<'_, Self>, poses: Poses<'_, Self>) -> Result<()> =
-        near.prepare_here(model, poses);
-    fn each_preimage(source: &Source<'_, Self>, targets: &Targets<'_, Self>, visit: &mut dyn FnMut(usize, Preimage<Self>)) =
-        source.each_preimage_here(targets, visit);
-    fn walk(grading: &Grading<'_, Self>, n: usize, visit: &mut dyn FnMut([Self; 3])) -> Result<()> =
-        grading.walk_here(n, visit);
-    fn solve_system(
-        system: &mut BoundarySystem<'_, Self>, c: &Configuration<'_, Self>, motions: &[Self], scratch: [&mut [Self]; 2]
-    ) -> Result<()> = {
-        let [zx, zy] = scratch;
-        system.solve(c, motions, zx, zy)
-    };
-    fn momenta(
-        system: &BoundarySystem<'_, Self>, c: &Configuration<'_, Self>, motions: &[Self], scratch: [&mut [Self]; 3], out: &mut [Self]
-    ) = system.momenta(c, motions, scratch, out);
-    fn pair_pass(
-        c: &Configuration<'_, Self>, qd: &[Self], density: &[Self], adjoint: &[Self], s: &mut PairScratch<'_, Self>,
-        out: PassResult<'_, Self>
-    ) = pair_pass(c, qd, density, adjoint, s, out);
-}
+pub(crate) use once;

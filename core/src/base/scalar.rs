@@ -3,6 +3,8 @@
 //! Every transcendental function goes through `libm`, with and without `std`, so that each gives the
 //! same bits whichever features it was built with.
 
+use crate::base::bits::Bits;
+use crate::base::machine::Vectors;
 use core::fmt::{Debug, Display};
 use core::ops::Neg;
 use num_traits::NumAssign;
@@ -13,12 +15,24 @@ mod sealed {
     impl Sealed for f64 {}
 }
 
+/// A family of types, one for each scalar.
+#[doc(hidden)]
+pub trait Of {
+    type With<R: Real>;
+}
+
+/// A member of a family, its scalar known.
+#[doc(hidden)]
+pub enum Which<T: Of> {
+    Double(T::With<f64>),
+    Single(T::With<f32>),
+}
+
 /// Scalar type of a model: `f32` or `f64`. Sealed.
 pub trait Real:
     sealed::Sealed
-    + crate::base::machine::Vectors
-    + crate::base::bits::Bits
-    + crate::base::once::Compiled
+    + Vectors
+    + Bits
     + Copy
     + Default
     + PartialOrd
@@ -78,6 +92,10 @@ pub trait Real:
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
+    /// Tells which scalar this is.
+    #[doc(hidden)]
+    fn which<T: Of>(x: T::With<Self>) -> Which<T>;
+
     /// Sine.
     #[inline]
     fn sin(self) -> Self {
@@ -123,9 +141,13 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $ln:ident, $ln1p:ident, $atan2:ident, $pow:ident,
+    ($t:ident, $which:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $ln:ident, $ln1p:ident, $atan2:ident, $pow:ident,
      $hypot:ident, $floor:ident) => {
         impl Real for $t {
+            #[inline(always)]
+            fn which<T: Of>(x: T::With<Self>) -> Which<T> {
+                Which::$which(x)
+            }
             const NAN: Self = $t::NAN;
             const EPSILON: Self = $t::EPSILON;
             const MAX: Self = $t::MAX;
@@ -197,5 +219,5 @@ macro_rules! real {
         }
     };
 }
-real!(f64, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor);
-real!(f32, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf);
+real!(f64, Double, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor);
+real!(f32, Single, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf);

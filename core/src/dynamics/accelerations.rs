@@ -10,17 +10,21 @@
 use crate::base::memory::{add, at, axpy, copy, inner, part, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
-use crate::dynamics::articulation::{accelerations, project, put_three, twist_of, velocities};
-use crate::dynamics::christoffel::{PairScratch, add_frame_terms, boundary_formula, without_turning};
+use crate::dynamics::articulation::{accelerations, project, velocities};
+use crate::dynamics::christoffel::{add_frame_terms, boundary_formula, without_turning};
 use crate::dynamics::evaluation::{Counters, Work, configuration, flow, lone_momentum, scratch, system};
 use crate::dynamics::forces::{buoyancy, circulation, repulsion};
 use crate::dynamics::indicators::force_scale;
-use crate::fluid::configuration::{Configuration, Poses};
-use crate::fluid::near::Near;
-use crate::fluid::pair_pass::PassResult;
+use crate::fluid::configuration::Configuration;
+use crate::fluid::induced::PairScratch;
+use crate::fluid::near::buffers::Near;
+use crate::fluid::pair_pass::{PassResult, pair_pass};
 use crate::fluid::potentials::{
-    BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
+    add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
+use crate::fluid::system::BoundarySystem;
+use crate::geometry::pose::Poses;
+use crate::geometry::pose::{put_three, twist_of};
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 use crate::scene::ForceFormula;
 
@@ -31,7 +35,7 @@ impl<R: Real> Work<'_, R> {
         if model.head.plan.unknowns > 0 && model.head.force == ForceFormula::ExactGradient {
             let c = &configuration!(self, model);
             let out = PassResult { rate: self.rate, transposed: self.transposed, gradient: self.gradient };
-            R::pair_pass(c, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
+            pair_pass(c, self.qd, self.density, self.adjoint, &mut scratch!(self), out);
             for g in self.gradient.iter_mut() {
                 *g *= model.head.fluid_density;
             }

@@ -4,10 +4,9 @@
 //! r_c + R_c h_c = r_p + R_p (h_p + u a), θ_c = θ_p + angle. Every routine walks the links once: O(links).
 
 use crate::base::complex::{Complex, cis, complex, perp};
-use crate::base::memory::{at, part, part_mut, put};
+use crate::base::memory::{at, part_mut, put};
 use crate::base::scalar::Real;
-use crate::fluid::configuration::{Poses, put_pose};
-use crate::geometry::pose::{Pose, Twist};
+use crate::geometry::pose::{Pose, Poses, put_pose, put_three, twist_of};
 use crate::model::{Control, Hold, LinkRecord, Model};
 
 /// Placement of every link from the coordinates `s`: writes q (3 per link) and the poses behind the walls'.
@@ -40,23 +39,6 @@ pub(crate) fn place_links<R: Real>(model: &Model<'_, R>, s: &[R], q: &mut [R], p
 /// Placement of a link, which stands behind those of the walls.
 fn pose_of<R: Real>(model: &Model<'_, R>, poses: &[R], link: usize) -> Pose<R> {
     Poses(poses).get(model.head.plan.walls + link)
-}
-
-/// The twist of link `i` in a vector of three reals per link.
-#[inline]
-pub(crate) fn twist_of<R: Real>(rates: &[R], i: usize) -> Twist<R> {
-    match part(rates, 3 * i, 3) {
-        &[x, y, w] => Twist { linear: complex(x, y), angular: w },
-        _ => Twist::default(),
-    }
-}
-
-/// Writes three reals of link `i`.
-#[inline]
-pub(crate) fn put_three<R: Real>(rates: &mut [R], i: usize, linear: Complex<R>, angular: R) {
-    for (slot, value) in part_mut(rates, 3 * i, 3).iter_mut().zip([linear.re, linear.im, angular]) {
-        *slot = value;
-    }
 }
 
 /// World offsets of the two anchors of a link from their links' centres, and the world axis of a slider.

@@ -3,14 +3,17 @@
 use crate::base::memory::{at, axpy, buffers, copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::dynamics::articulation::put_three;
-use crate::dynamics::articulation::{jacobian_column, place_links, set_coordinates, twist_of, velocities};
-use crate::fluid::configuration::{Configuration, Poses, put_pose};
-use crate::fluid::near::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
+use crate::dynamics::articulation::{jacobian_column, place_links, set_coordinates, velocities};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::near::buffers::{COLUMNS, LADDER_LIST, Near, NearMut, PREIMAGES};
 use crate::fluid::potentials::{
-    BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
+    add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
+use crate::fluid::system::{BoundarySystem, column_momenta, solve_columns};
 use crate::geometry::pose::Twist;
+use crate::geometry::pose::put_three;
+use crate::geometry::pose::twist_of;
+use crate::geometry::pose::{Poses, put_pose};
 use crate::linear::ldl;
 use crate::model::{Control, Formulation, Model, ModelHead, NearDims};
 
@@ -215,7 +218,7 @@ impl<R: Real> Work<'_, R> {
             preimages: self.near_preimages,
             unknowns: self.pivots.len(),
         };
-        R::prepare(&mut near, model, Poses(self.poses))
+        crate::fluid::near::prepare(&mut near, model, Poses(self.poses))
     }
 
     /// Writes the walls' poses, once.
@@ -267,8 +270,8 @@ impl<R: Real> Work<'_, R> {
             put(self.matrix_at, 0, R::count(if fits { to_line } else { 0 }));
         }
         let mut system = system!(self);
-        R::solve_system(&mut system, c, self.moving, [self.zx, self.zy])?;
-        R::momenta(&system, c, self.moving, [self.hx, self.hy, self.fx], self.momenta);
+        solve_columns(&mut system, c, self.moving, self.zx, self.zy)?;
+        column_momenta(&system, c, self.moving, self.hx, self.hy, self.fx, self.momenta);
         for p in self.momenta.chunks_exact_mut(rows.max(1)) {
             to_world(c, density, p);
         }

@@ -9,12 +9,14 @@ use crate::base::memory::{at, axpy, inner, part, part_mut};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::accelerations::largest_force;
-use crate::dynamics::christoffel::PairScratch;
 use crate::dynamics::evaluation::{Work, configuration, scratch, system};
-use crate::fluid::configuration::{Configuration, Poses};
-use crate::fluid::near::Near;
-use crate::fluid::pair_pass::PassResult;
-use crate::fluid::potentials::{BoundarySystem, add_potential_moments, flux_moments};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::induced::PairScratch;
+use crate::fluid::near::buffers::Near;
+use crate::fluid::pair_pass::{PassResult, pair_pass};
+use crate::fluid::potentials::{add_potential_moments, flux_moments};
+use crate::fluid::system::BoundarySystem;
+use crate::geometry::pose::Poses;
 use crate::linear::lu::Factors;
 use crate::model::Model;
 use crate::simulation::sim::{Sim, Watch};
@@ -70,7 +72,7 @@ pub(crate) fn constant_error<R: Real>(model: &Model<'_, R>, factors: &Factors<'_
     }
     factors.solve(density);
     // Between walls an error may be large that no body feels; but by the plain rule a wall may be too thin for its own nodes.
-    let links = model.boundaries.iter().filter(|b| b.link.is_some() || b.table_len == 0);
+    let links = model.boundaries.iter().filter(|b| b.link.is_some() || b.slots.table_len == 0);
     let values = links.flat_map(|b| part(density, b.first, b.nodes));
     values.fold(R::zero(), |m, x| m.max((*x - R::one()).abs()))
 }
@@ -152,7 +154,7 @@ impl<R: Real> Sim<'_, R> {
         let scale = force_scale(&model, w.force, w.momentum, w.qd);
         let out = PassResult { rate: w.rate, transposed: w.transposed, gradient: w.gradient };
         let c = &configuration!(w, &model);
-        R::pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
+        pair_pass(c, w.qd, w.density, w.adjoint, &mut scratch!(w), out);
         let system = system!(w);
         system.factors().solve(w.rate);
         system.factors().solve_transposed(w.transposed);

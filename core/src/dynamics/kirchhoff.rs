@@ -5,13 +5,15 @@ use crate::base::complex::{Complex, cis, cln, complex, dot, perp};
 use crate::base::memory::{add, at, copy, part_mut, put, take};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
-use crate::dynamics::articulation::twist_of;
 use crate::dynamics::evaluation::{Counters, Work};
-use crate::fluid::configuration::put_pose;
+use crate::fluid::near::preimage::Source;
+use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
+use crate::geometry::pose::put_pose;
+use crate::geometry::pose::twist_of;
 use crate::geometry::pose::{Pose, Twist};
 use crate::linear::ldl;
 use crate::linear::lu::{Factors, factor};
-use crate::model::boundary::{Block, BoundaryRecord, add_flank_terms, fill_self_block};
+use crate::model::boundary::BoundaryRecord;
 use crate::model::{LinkRecord, Model};
 
 impl<R: Real> Work<'_, R> {
@@ -108,7 +110,7 @@ pub(crate) fn constants<R: Real>(
     let pivots = take(&mut rest, n)?;
     let regular = if circulation { take(&mut rest, n * n)? } else { &mut [] };
     let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
-    let source = body.source(store);
+    let source = Source::of(body, store);
     let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut *regular, ld: n, at: 0 });
     fill_self_block(&source.nodes, body.sign, R::zero(), &mut a, &mut g);
     add_flank_terms(&source, body.sign, &mut a, &mut g);

@@ -11,11 +11,14 @@ use crate::base::lanes::LANES;
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{copy, part, part_mut, put};
 use crate::base::scalar::Real;
-use crate::fluid::configuration::{Configuration, fill_targets, relative, targets};
-use crate::fluid::near::preimage::Targets;
-use crate::fluid::near::{Near, pole};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::near::preimage::{Source, Targets, each_preimage};
+use crate::fluid::self_block::{Block, add_flank_terms, add_pole_term, fill_self_block};
+use crate::geometry::nodes::Nodes;
+use crate::geometry::nodes::{fill_targets, targets};
+use crate::geometry::pose::relative;
 use crate::model::ModelHead;
-use crate::model::boundary::{Block, BoundaryRecord, Nodes, add_flank_terms, add_pole_term, fill_self_block};
+use crate::model::boundary::BoundaryRecord;
 
 /// 1/N_T in every entry of the tank's own block.
 fn completion<R: Real>(b: &BoundaryRecord<R>) -> R {
@@ -34,7 +37,7 @@ pub(crate) fn fill_walls<R: Real>(
     let Some((block, rest)) = blocks.split_at_mut_checked(n * n) else { return };
     let regular: &mut [R] = if circulation { part_mut(rest, 0, n * n) } else { &mut [] };
     for b in walls {
-        let source = b.source(data);
+        let source = Source::of(b, data);
         let factor = b.sign / R::PI;
         for target in walls {
             let at = b.first * n + target.first;
@@ -56,7 +59,7 @@ pub(crate) fn fill_walls<R: Real>(
                 continue;
             }
             let (turn, shift) = relative(target.pose, b.pose);
-            source.each_preimage(&Targets { nodes: points, turn, shift, own: false }, |i, p| {
+            each_preimage(&source, &Targets { nodes: points, turn, shift, own: false }, &mut |i, p| {
                 add_pole_term(&p, source.table, b.nodes, b.sign, i, &mut a, &mut g);
             });
         }
@@ -102,14 +105,17 @@ pub(crate) fn assemble<R: Real>(
             None => part(store, walls_at + source.first * walls, ready_len * source.nodes),
         };
         let (zx, zy) = (&*zx, &*zy);
-        let own =
-            if source.link.is_none() && keep_walls { &[] } else { ready_at(source.self_at, c.model.head.walls_at) };
+        let own = if source.link.is_none() && keep_walls {
+            &[]
+        } else {
+            ready_at(source.slots.self_at, c.model.head.walls_at)
+        };
         let columns = part_mut(matrix, source.first * ld, source.nodes * ld);
         let parts = (ready, ready_len);
         machine.run(BlockColumns { nodes, factor: complex(factor, R::zero()), zx, zy, parts, own, columns, ld });
         if !regular.is_empty() {
             // Re(w/(g−z)) = −Im(−i w/(g−z)): the same kernel with the weight turned by −90°.
-            let own = ready_at(source.regular_at, c.model.head.walls_regular_at);
+            let own = ready_at(source.slots.regular_at, c.model.head.walls_regular_at);
             let (columns, factor) =
                 (part_mut(regular, source.first * n, source.nodes * n), complex(R::zero(), -factor));
             machine.run(BlockColumns { nodes, factor, zx, zy, parts, own, columns, ld: n });
@@ -123,65 +129,6 @@ pub(crate) fn assemble<R: Real>(
                 for p in c.preimages(j, row) {
                     add_pole_term(&p, source.table(store), source.nodes, source.sign, row, &mut a, &mut g);
                 }
-            }
-        }
-    }
-}
-
-/// Adds the pole terms of D to what the plain rule gives: h_i += Σ_k D_ik w_k at the targets of one boundary and, where
-/// `f` and `out` are not empty, Im Σ_i f_i D_ik to `out_k`.
-pub(crate) fn add_pole_velocity<R: Real>(
-    c: &Configuration<'_, R>,
-    (j, source): (usize, &BoundaryRecord<R>),
-    first: usize,
-    [wx, wy]: [&[R]; 2],
-    [fx, fy]: [&[R]; 2],
-    [hx, hy]: [&mut [R]; 2],
-    out: &mut [R],
-) {
-    let table = source.table(c.model.store);
-    if table.is_empty() {
-        return;
-    }
-    let scale = source.sign / R::PI;
-    Machine::here().run(PoleVelocity {
-        near: c.near,
-        j,
-        first,
-        table,
-        scale,
-        w: [wx, wy],
-        f: [fx, fy],
-        h: [hx, hy],
-        out,
-    });
-}
-
-/// The loop of [`add_pole_velocity`].
-struct PoleVelocity<'a, 'b, R> {
-    near: Near<'a, R>,
-    j: usize,
-    first: usize,
-    table: &'a [R],
-    scale: R,
-    w: [&'b [R]; 2],
-    f: [&'b [R]; 2],
-    h: [&'b mut [R]; 2],
-    out: &'b mut [R],
-}
-
-impl<R: Real> Task for PoleVelocity<'_, '_, R> {
-    type Output = ();
-    #[inline(always)]
-    fn run(self) {
-        let PoleVelocity { near, j, first, table, scale, w, f: [fx, fy], h: [hx, hy], out } = self;
-        for (i, (hx, hy)) in hx.iter_mut().zip(hy).enumerate() {
-            for p in near.preimages(j, first + i) {
-                let h = match fx.get(i).zip(fy.get(i)) {
-                    Some((fx, fy)) => pole::slope_products(&p, table, w[0], complex(*fx, *fy), scale, out),
-                    None => pole::slope_sum(&p, table, w, scale),
-                };
-                (*hx, *hy) = (*hx + h.re, *hy + h.im);
             }
         }
     }
@@ -247,31 +194,5 @@ fn kernel_column<R: Real>([zx, zy]: [&[R]; 2], g: Complex<R>, weight: Complex<R>
         && let (Some(out), Some(x), Some(y)) = (out.last_chunk_mut(), zx.last_chunk(), zy.last_chunk())
     {
         *out = values(x, y);
-    }
-}
-
-/// Complex velocity that a density `w` (real and imaginary part; an empty imaginary part is 0) on boundary j
-/// induces at the targets: Σ_k D_ik w_k, D = (sign_j/π) h Γ'_k/(Γ_k − z_i)². Adds to `hx`, `hy`. One division per pair.
-pub(crate) fn induced_velocity<R: Real>(
-    source: &BoundaryRecord<R>,
-    nodes: &Nodes<'_, R>,
-    wx: &[R],
-    wy: &[R],
-    zx: &[R],
-    zy: &[R],
-    hx: &mut [R],
-    hy: &mut [R],
-) {
-    let factor = nodes.step * source.sign / R::PI;
-    for (k, ((g, dg), wx)) in nodes.points().zip(nodes.tangents()).zip(wx).enumerate() {
-        let c = dg * complex(*wx, wy.get(k).copied().unwrap_or(R::zero())) * factor;
-        for (((hx, hy), x), y) in hx.iter_mut().zip(hy.iter_mut()).zip(zx).zip(zy) {
-            let (dx, dy) = (g.re - *x, g.im - *y);
-            let inverse = R::one() / (dx * dx + dy * dy);
-            let (ex, ey) = (dx * inverse, -dy * inverse);
-            let (sx, sy) = (ex * ex - ey * ey, (ex + ex) * ey);
-            *hx += c.re * sx - c.im * sy;
-            *hy += c.re * sy + c.im * sx;
-        }
     }
 }

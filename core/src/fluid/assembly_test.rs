@@ -6,11 +6,14 @@ use crate::base::complex::{Complex, cabs, complex};
 use crate::base::scalar::Real;
 use crate::dynamics::evaluation::configuration;
 use crate::fluid::assembly::assemble;
-use crate::fluid::configuration::{Configuration, Poses};
-use crate::fluid::near::{Near, pole};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::near::buffers::Near;
+use crate::fluid::near::pole;
 use crate::fluid::potentials::{add_interior_potential, fill_flux};
+use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
+use crate::geometry::pose::Poses;
 use crate::linear::lu::{Factors, factor};
-use crate::model::boundary::{Block, BoundaryRecord, add_flank_terms, fill_nodes, fill_self_block};
+use crate::model::boundary::{BoundaryRecord, fill_nodes};
 use crate::scene::{Body, Link, Mass, Quadrature, Root, Scene, Shape, Wall};
 use crate::setup::owned::{ModelBuf, SimBuf};
 use crate::simulation::sim::{Method, Sim};
@@ -310,8 +313,8 @@ fn discs(gap: f64, turns: [f64; 2], nodes: usize) -> SimBuf<f64> {
 
 #[test]
 fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
-    use crate::fluid::assembly::{add_pole_velocity, induced_velocity};
-    use crate::fluid::configuration::fill_targets;
+    use crate::fluid::induced::{add_pole_velocity, induced_velocity};
+    use crate::geometry::nodes::fill_targets;
     for gap in [1e-1, 1e-3, 1e-5] {
         for turns in [[0.0, 0.0], [-2.345, 1.234]] {
             let nodes = 64;

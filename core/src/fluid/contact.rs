@@ -6,10 +6,12 @@ use crate::base::machine::{Machine, Task};
 use crate::base::memory::{at, copy};
 use crate::base::scalar::Real;
 use crate::base::status::Place;
-use crate::fluid::configuration::{Poses, targets};
+use crate::geometry::nodes::Nodes;
+use crate::geometry::nodes::targets;
 use crate::geometry::pose::Pose;
+use crate::geometry::pose::Poses;
 use crate::model::Model;
-use crate::model::boundary::{BoundaryRecord, Nodes};
+use crate::model::boundary::BoundaryRecord;
 
 /// The smallest distance between two boundaries of which one moves.
 #[derive(Clone, Copy, PartialEq, Debug)]

@@ -8,11 +8,13 @@ use crate::base::features;
 use crate::base::lanes::{LANES, lanes, sum_of};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{part, part_mut};
+use crate::base::once::once;
 use crate::base::scalar::Real;
-use crate::dynamics::christoffel::{PairScratch, Relative, add_pose_sums, pose_sums};
-use crate::fluid::assembly::add_pole_velocity;
 use crate::fluid::configuration::Configuration;
-use crate::model::boundary::{BoundaryRecord, Nodes};
+use crate::fluid::induced::add_pole_velocity;
+use crate::fluid::induced::{PairScratch, Relative, add_pose_sums, pose_sums};
+use crate::geometry::nodes::Nodes;
+use crate::model::boundary::BoundaryRecord;
 
 /// What [`pair_pass`] fills: two vectors of length N and three reals per link.
 pub(crate) struct PassResult<'a, R> {
@@ -21,58 +23,56 @@ pub(crate) struct PassResult<'a, R> {
     pub gradient: &'a mut [R],
 }
 
-/// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
-/// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per two pairs of nodes.
-pub(crate) fn pair_pass<R: Real>(
-    c: &Configuration<'_, R>,
-    qd: &[R],
-    density: &[R],
-    adjoint: &[R],
-    s: &mut PairScratch<'_, R>,
-    out: PassResult<'_, R>,
-) {
-    out.rate.fill(R::zero());
-    out.transposed.fill(R::zero());
-    out.gradient.fill(R::zero());
-    let machine = Machine::here();
-    let count = c.model.boundaries.len();
-    for (i, j) in (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))) {
-        let (Some((a, a_nodes)), Some((b, b_nodes))) = (c.boundary(i), c.boundary(j)) else { continue };
-        if a.link.is_none() && b.link.is_none() {
-            continue;
+once! {
+    /// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
+    /// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per two pairs of nodes.
+    pub(crate) fn pair_pass['a, 'b: 'a](
+        c: &'a Configuration<'b, R>, qd: &'a [R], density: &'a [R], adjoint: &'a [R], s: &'a mut PairScratch<'b, R>,
+        out: PassResult<'a, R>,
+    ) {
+        out.rate.fill(R::zero());
+        out.transposed.fill(R::zero());
+        out.gradient.fill(R::zero());
+        let machine = Machine::here();
+        let count = c.model.boundaries.len();
+        for (i, j) in (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j))) {
+            let (Some((a, a_nodes)), Some((b, b_nodes))) = (c.boundary(i), c.boundary(j)) else { continue };
+            if a.link.is_none() && b.link.is_none() {
+                continue;
+            }
+            let (n, m) = (a.nodes, b.nodes);
+            let relative = [Relative::of(c, i, j, qd), Relative::of(c, j, i, qd)];
+            let [ra, rb] = [&relative[0], &relative[1]].map(|r| r.rate);
+            let (first, second) = out.transposed.split_at_mut_checked(b.first).unwrap_or((&mut [], &mut []));
+            let columns = [&mut *s.fx, &mut *s.fy, &mut *s.hx, &mut *s.hy];
+            let [fx, fy, hx, hy] =
+                columns.map(|x| part_mut(x, 0, n + m).split_at_mut_checked(n).unwrap_or((&mut [], &mut [])));
+            let mut a =
+                Side::of((i, a, a_nodes), ra, [density, adjoint], [fx.0, fy.0, hx.0, hy.0], part_mut(first, a.first, n));
+            let mut b = Side::of((j, b, b_nodes), rb, [density, adjoint], [fx.1, fy.1, hx.1, hy.1], part_mut(second, 0, m));
+            let mut end = |target: &Side<'_, '_, R>, source: usize| {
+                let rates = part_mut(out.rate, target.record.first, target.record.nodes);
+                let mut sums = [Complex::default(); 2];
+                machine.run(End { side: target, rates, sums: &mut sums });
+                add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
+            };
+            let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
+            let poles = features::NEAR && (has_poles(c, &a, j) || has_poles(c, &b, i));
+            let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
+            if poles {
+                // A pole term cancels against the plain rule: both must be of the same rounded differences.
+                machine.run(Pair::<R, false> { a: &mut a, b: &mut b, place: ab, z });
+                add_poles(c, &mut a, &mut b);
+                end(&a, j);
+                let z = [part_mut(s.zx, 0, m), part_mut(s.zy, 0, m)];
+                machine.run(Pair::<R, false> { a: &mut b, b: &mut a, place: ba, z });
+                add_poles(c, &mut b, &mut a);
+            } else {
+                machine.run(Pair::<R, true> { a: &mut a, b: &mut b, place: ab, z });
+                end(&a, j);
+            }
+            end(&b, i);
         }
-        let (n, m) = (a.nodes, b.nodes);
-        let relative = [Relative::of(c, i, j, qd), Relative::of(c, j, i, qd)];
-        let [ra, rb] = [&relative[0], &relative[1]].map(|r| r.rate);
-        let (first, second) = out.transposed.split_at_mut_checked(b.first).unwrap_or((&mut [], &mut []));
-        let columns = [&mut *s.fx, &mut *s.fy, &mut *s.hx, &mut *s.hy];
-        let [fx, fy, hx, hy] =
-            columns.map(|x| part_mut(x, 0, n + m).split_at_mut_checked(n).unwrap_or((&mut [], &mut [])));
-        let mut a =
-            Side::of((i, a, a_nodes), ra, [density, adjoint], [fx.0, fy.0, hx.0, hy.0], part_mut(first, a.first, n));
-        let mut b = Side::of((j, b, b_nodes), rb, [density, adjoint], [fx.1, fy.1, hx.1, hy.1], part_mut(second, 0, m));
-        let mut end = |target: &Side<'_, '_, R>, source: usize| {
-            let rates = part_mut(out.rate, target.record.first, target.record.nodes);
-            let mut sums = [Complex::default(); 2];
-            machine.run(End { side: target, rates, sums: &mut sums });
-            add_pose_sums(c, target.index, source, sums, R::one(), out.gradient);
-        };
-        let [ab, ba] = [&relative[0], &relative[1]].map(|r| r.place);
-        let poles = features::NEAR && (has_poles(c, &a, j) || has_poles(c, &b, i));
-        let z = [part_mut(s.zx, 0, n), part_mut(s.zy, 0, n)];
-        if poles {
-            // A pole term cancels against the plain rule: both must be of the same rounded differences.
-            machine.run(Pair::<R, false> { a: &mut a, b: &mut b, place: ab, z });
-            add_poles(c, &mut a, &mut b);
-            end(&a, j);
-            let z = [part_mut(s.zx, 0, m), part_mut(s.zy, 0, m)];
-            machine.run(Pair::<R, false> { a: &mut b, b: &mut a, place: ba, z });
-            add_poles(c, &mut b, &mut a);
-        } else {
-            machine.run(Pair::<R, true> { a: &mut a, b: &mut b, place: ab, z });
-            end(&a, j);
-        }
-        end(&b, i);
     }
 }
 

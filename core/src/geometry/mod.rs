@@ -2,4 +2,5 @@
 
 pub(crate) mod curve;
 pub(crate) mod grading;
+pub(crate) mod nodes;
 pub(crate) mod pose;

@@ -5,8 +5,7 @@ use crate::base::status::{Error, Result, Status};
 use crate::geometry::curve::SHARP;
 #[cfg(feature = "alloc")]
 use crate::scene::{Body, Link, Scene, Wall};
-use crate::scene::{Description, Quadrature, Shape};
-use crate::setup::layout::each_link;
+use crate::scene::{Description, Quadrature, Shape, each_link};
 
 /// Tolerance in space of automatic nodes when the scene asks for none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-8;

@@ -7,9 +7,11 @@ use crate::base::status::{Error, Result, Status};
 use crate::model::boundary::BoundaryRecord;
 use crate::model::plan::Plan;
 use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead, NearDims};
-use crate::scene::{CirculationModel, Description};
-use crate::setup::layout::{Layout, Traits, each_link, items, lay_out, motions, wall_count};
+use crate::scene::{CirculationModel, Description, each_link, motions, wall_count};
+use crate::setup::items::items;
+use crate::setup::layout::{Layout, lay_out};
 use crate::setup::records::{build_boundaries, build_coordinates, build_links, grade_walls};
+use crate::setup::traits::Traits;
 use crate::setup::validate::validate;
 
 /// Lengths of a model's four arrays.
@@ -45,7 +47,7 @@ impl<'a, R: Real> Model<'a, R> {
     /// Any of the set-up errors of [`Status`], with the place in the scene.
     pub fn requirement(scene: &impl Description<R>) -> Result<ModelRequirement> {
         validate(scene)?;
-        let layout = lay_out(scene, &Traits::of(scene), |_, _| ())?;
+        let layout = lay_out(scene, &Traits::of(scene), |_, _, _| ())?;
         Ok(ModelRequirement {
             links: each_link(scene).count(),
             coordinates: motions(scene).count(),
@@ -67,25 +69,9 @@ impl<'a, R: Real> Model<'a, R> {
             }
         }
         let traits = Traits::of(scene);
-        let layout = lay_out(scene, &traits, |i, s| {
+        let layout = lay_out(scene, &traits, |i, first, slots| {
             if let Some(b) = memory.boundaries.get_mut(i) {
-                *b = BoundaryRecord {
-                    first: s.first,
-                    store_at: s.store_at,
-                    store_len: s.store_len,
-                    data_at: s.data_at,
-                    self_at: s.self_at,
-                    regular_at: s.regular_at,
-                    ladders_at: s.ladders_at,
-                    tips_at: s.tips_at,
-                    modes_at: s.modes_at,
-                    modes: s.modes,
-                    table_at: s.table_at,
-                    table_len: s.table_len,
-                    rungs_at: s.rungs_at,
-                    rungs_len: s.rungs_len,
-                    ..BoundaryRecord::default()
-                };
+                *b = BoundaryRecord { first, slots, ..BoundaryRecord::default() };
             }
         })?;
         let store = &mut *memory.reals;

@@ -2,8 +2,10 @@
 
 pub(crate) mod automatic_nodes;
 pub(crate) mod compile;
+mod items;
 mod layout;
 #[cfg(feature = "alloc")]
 pub(crate) mod owned;
 mod records;
-pub(crate) mod validate;
+mod traits;
+mod validate;

@@ -6,14 +6,20 @@ use crate::base::memory::{copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::fluid::contact::Placed;
-use crate::fluid::near::{self, LADDER_LIST, ladders};
-use crate::model::boundary::{
-    Block, BoundaryRecord, Core, add_flank_terms, fill_nodes, fill_rotation_potential, fill_self_block,
-};
+use crate::fluid::near::buffers::LADDER_LIST;
+use crate::fluid::near::ladders;
+use crate::fluid::near::pole;
+use crate::fluid::near::preimage::Source;
+use crate::fluid::rotation::fill_rotation_potential;
+use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
+use crate::geometry::nodes::write_nodes;
+use crate::model::boundary::Slots;
+use crate::model::boundary::{BoundaryRecord, Core};
 use crate::model::signal::SignalRecord;
 use crate::model::{Control, CoordinateRecord, Formulation, Hold, LinkRecord};
-use crate::scene::{Description, Drive, Joint, JointKind, Mass, Root, Shape, Signal};
-use crate::setup::layout::{Traits, each_link, items, wall_count};
+use crate::scene::{Description, Drive, Joint, JointKind, Mass, Root, Shape, Signal, each_link, wall_count};
+use crate::setup::items::{items, twin_of};
+use crate::setup::traits::Traits;
 
 pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
     scene: &S,
@@ -24,18 +30,12 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
 ) -> Result<()> {
     for (i, item) in items(scene).enumerate() {
         let here = |e: Error| e.at(item.place);
-        let shared = items(scene).enumerate().take(i).find(|(_, j)| {
-            j.link.is_some()
-                && item.link.is_some()
-                && j.shape == item.shape
-                && j.nodes == item.nodes
-                && j.centre == item.centre
-        });
-        let twin = shared.and_then(|(j, _)| boundaries.get(j).copied());
+        let twin = twin_of(scene, i, &item).and_then(|j| boundaries.get(j).copied());
         let Some(record) = boundaries.get_mut(i) else { return Err(Status::Internal.into()) };
-        let rungs = (record.rungs_at, record.rungs_len);
         if let Some(twin) = twin {
-            *record = BoundaryRecord { first: record.first, ..twin };
+            // The rungs of a configuration are its own.
+            let slots = Slots { rungs_at: record.slots.rungs_at, rungs_len: record.slots.rungs_len, ..twin.slots };
+            *record = BoundaryRecord { first: record.first, slots, ..twin };
         }
         record.place = item.place;
         record.link = item.link;
@@ -43,16 +43,15 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         record.nodes = item.nodes;
         record.circulation = item.circulation;
         record.pose = item.pose;
-        (record.rungs_at, record.rungs_len) = rungs;
         if twin.is_some() {
             continue;
         }
-        let own = part_mut(store, record.store_at, record.store_len);
+        let own = part_mut(store, record.slots.store_at, record.slots.store_len);
         (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
         if features::NEAR && traits.graded {
             list_ladders(record, &item.shape, store).map_err(here)?;
         }
-        let own = part(store, record.store_at, record.store_len);
+        let own = part(store, record.slots.store_at, record.slots.store_len);
         if let Some(centre) = item.centre {
             let area = record.outline.view(own).properties().map_err(here)?;
             record.origin = area.centroid + complex(centre[0], centre[1]);
@@ -66,12 +65,12 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
             if traits.formulation != Formulation::Kirchhoff {
                 let n2 = item.nodes * item.nodes;
                 // The blocks lie behind the node arrays they are made from.
-                let (data, blocks) = store.split_at_mut_checked(record.self_at).ok_or(Status::Internal)?;
+                let (data, blocks) = store.split_at_mut_checked(record.slots.self_at).ok_or(Status::Internal)?;
                 let (block, rest) = blocks.split_at_mut_checked(n2).ok_or(Status::Internal)?;
                 let regular = if traits.circulation { part_mut(rest, 0, n2) } else { &mut [] };
                 let (mut block, mut regular) =
                     (Block { data: block, ld: item.nodes, at: 0 }, Block { data: regular, ld: item.nodes, at: 0 });
-                let source = record.source(data);
+                let source = Source::of(record, data);
                 fill_self_block(&source.nodes, record.sign, R::zero(), &mut block, &mut regular);
                 add_flank_terms(&source, record.sign, &mut block, &mut regular);
             }
@@ -86,9 +85,9 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
 /// Lists the permanent ladders, tips and corners of a compiled outline in the store.
 fn list_ladders<R: Real>(record: &mut BoundaryRecord<R>, shape: &Shape<'_, R>, store: &mut [R]) -> Result<()> {
     let (most_ladders, most_tips) = shape.ladder_counts()?;
-    let (lists, own) = store.split_at_mut_checked(record.store_at).ok_or(Status::Internal)?;
-    let own = part(own, 0, record.store_len);
-    let (outline, ladders_at, tips_at) = (record.outline, record.ladders_at, record.tips_at);
+    let (lists, own) = store.split_at_mut_checked(record.slots.store_at).ok_or(Status::Internal)?;
+    let own = part(own, 0, record.slots.store_len);
+    let (outline, ladders_at, tips_at) = (record.outline, record.slots.ladders_at, record.slots.tips_at);
     (record.ladders, record.tips) = (0, 0);
     outline.each_ladder(own, |l| {
         if record.ladders < most_ladders {
@@ -116,16 +115,16 @@ pub(crate) fn grade_walls<R: Real>(walls: &mut [BoundaryRecord<R>], store: &mut 
         }
     }
     for (i, b) in walls.iter_mut().enumerate() {
-        if near::ladder_count(part(lists, i * LADDER_LIST, LADDER_LIST)) == 0 {
+        if crate::fluid::near::buffers::ladder_count(part(lists, i * LADDER_LIST, LADDER_LIST)) == 0 {
             continue;
         }
         for l in ladders::listed(lists, i) {
-            copy(part_mut(store, b.ladders_at + 3 * b.ladders, 3), &[l.t, l.beta, l.top]);
+            copy(part_mut(store, b.slots.ladders_at + 3 * b.ladders, 3), &[l.t, l.beta, l.top]);
             b.ladders += 1;
         }
-        let (before, own) = store.split_at_mut_checked(b.store_at).ok_or(Status::Internal)?;
+        let (before, own) = store.split_at_mut_checked(b.slots.store_at).ok_or(Status::Internal)?;
         let mut outline = b.outline;
-        outline.regrade(b.ladders(before), part_mut(own, 0, b.store_len)).map_err(|e| e.at(b.place))?;
+        outline.regrade(b.ladders(before), part_mut(own, 0, b.slots.store_len)).map_err(|e| e.at(b.place))?;
         b.outline = outline;
         fill_nodes(b, store).map_err(|e| e.at(b.place))?;
     }
@@ -177,7 +176,7 @@ pub(crate) fn build_links<R: Real, S: Description<R>>(
         let Some(boundary) = boundaries.get(walls + i) else { return Err(Status::Internal.into()) };
         let area = boundary
             .outline
-            .view(crate::base::memory::part(store, boundary.store_at, boundary.store_len))
+            .view(crate::base::memory::part(store, boundary.slots.store_at, boundary.slots.store_len))
             .properties()?;
         let centroid = area.centroid - boundary.origin;
         let (mass, inertia) = match link.mass {
@@ -279,4 +278,18 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
         link += scene.link_count(b);
     }
     Ok(channels)
+}
+
+/// Fills the node arrays of a boundary whose frame origin is known, its reach and spacing, and its table of pole terms.
+fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R]) -> Result<()> {
+    let n = record.nodes;
+    let (outlines, data) = store.split_at_mut_checked(record.slots.data_at).ok_or(Status::Internal)?;
+    let (reach, speed) = write_nodes(&record.view(outlines), record.origin, n, data)?;
+    record.spacing = speed * R::TAU / R::count(n.max(1));
+    // The outline may bulge beyond its nodes by at most half a spacing.
+    record.reach = reach + record.spacing * R::HALF;
+    if features::NEAR && record.slots.table_len > 0 {
+        pole::fill_table(n, part_mut(store, record.slots.table_at, record.slots.table_len));
+    }
+    if reach.is_finite() && speed.is_finite() { Ok(()) } else { Err(Status::NotFinite.into()) }
 }

@@ -4,8 +4,8 @@ use crate::base::features;
 use crate::base::lanes::LEAST_NODES;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
-use crate::scene::{Description, Drive, JointKind, Link, Mass, Quadrature};
-use crate::setup::layout::{each_link, items};
+use crate::scene::{Description, Drive, JointKind, Link, Mass, Quadrature, each_link};
+use crate::setup::items::items;
 
 /// Most nodes allowed on one boundary.
 const MOST_NODES: usize = 1 << 16;

@@ -5,18 +5,20 @@ use crate::base::memory::{at, copy, part, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::accelerations::joint_torque;
-use crate::dynamics::articulation::{put_three, twist_of};
-use crate::dynamics::christoffel::PairScratch;
 use crate::dynamics::evaluation::Counters;
 use crate::dynamics::evaluation::{Work, configuration, flow, scratch, system};
 use crate::dynamics::forces::{buoyancy, circulation, repulsion};
-use crate::fluid::configuration::{Configuration, Poses};
+use crate::fluid::configuration::Configuration;
 use crate::fluid::contact::Gap;
 use crate::fluid::contact::smallest_gap;
-use crate::fluid::near::Near;
+use crate::fluid::induced::PairScratch;
+use crate::fluid::near::buffers::Near;
 use crate::fluid::potentials::{
-    BoundarySystem, add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
+    add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
+use crate::fluid::system::BoundarySystem;
+use crate::geometry::pose::Poses;
+use crate::geometry::pose::{put_three, twist_of};
 use crate::model::{Control, Formulation, Model};
 use crate::simulation::sim::Sim;
 
@@ -102,7 +104,7 @@ impl<R: Real> Sim<'_, R> {
         let walls = self.model.head.plan.walls;
         for i in 0..self.model.links.len() {
             if let &[x, y, theta] = part(self.state.positions, 3 * i, 3) {
-                crate::fluid::configuration::put_pose(poses, walls + i, &crate::geometry::pose::Pose::new(x, y, theta));
+                crate::geometry::pose::put_pose(poses, walls + i, &crate::geometry::pose::Pose::new(x, y, theta));
             }
         }
         smallest_gap(&self.model, Poses(poses))

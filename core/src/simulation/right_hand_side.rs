@@ -4,8 +4,8 @@ use crate::base::memory::{at, copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::evaluation::{Counters, Work};
-use crate::fluid::configuration::Poses;
 use crate::fluid::contact::{first_misplaced, swept_contact};
+use crate::geometry::pose::Poses;
 use crate::integrate::System;
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 

@@ -4,9 +4,10 @@ use crate::base::scalar::Real;
 use crate::base::status::Result;
 use crate::dynamics::evaluation::{configuration, system};
 use crate::fluid::assembly::assemble;
-use crate::fluid::configuration::{Configuration, Poses};
-use crate::fluid::near::Near;
-use crate::fluid::potentials::BoundarySystem;
+use crate::fluid::configuration::Configuration;
+use crate::fluid::near::buffers::Near;
+use crate::fluid::system::BoundarySystem;
+use crate::geometry::pose::Poses;
 use crate::simulation::right_hand_side::split_state;
 use crate::simulation::sim::Sim;
 

@@ -3,8 +3,8 @@
 
 use crate::base::memory::{add, at};
 use crate::base::scalar::Real;
-use crate::dynamics::articulation::twist_of;
-use crate::fluid::configuration::Poses;
+use crate::geometry::pose::Poses;
+use crate::geometry::pose::twist_of;
 use crate::model::Model;
 
 /// Potential energy, J/m.

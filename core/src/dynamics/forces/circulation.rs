@@ -10,13 +10,16 @@
 use crate::base::complex::{Complex, cln, complex, csqrt, dot, perp};
 use crate::base::memory::{add, at, axpy, inner, part, part_mut};
 use crate::base::scalar::Real;
-use crate::dynamics::articulation::{put_three, twist_of};
-use crate::dynamics::christoffel::{
+use crate::fluid::configuration::Configuration;
+use crate::fluid::induced::{
     Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates,
 };
-use crate::fluid::configuration::{Configuration, targets};
-use crate::fluid::potentials::{BoundarySystem, flux_moments, to_world};
-use crate::model::boundary::{BoundaryRecord, Core, Nodes};
+use crate::fluid::potentials::{flux_moments, to_world};
+use crate::fluid::system::BoundarySystem;
+use crate::geometry::nodes::Nodes;
+use crate::geometry::nodes::targets;
+use crate::geometry::pose::{put_three, twist_of};
+use crate::model::boundary::{BoundaryRecord, Core};
 
 /// Vectors of the circulatory flow, each of length N.
 pub(crate) struct Flow<'a, R> {

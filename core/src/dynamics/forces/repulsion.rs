@@ -5,10 +5,11 @@
 
 use crate::base::complex::{Complex, cabs, cis, complex};
 use crate::base::scalar::Real;
-use crate::dynamics::christoffel::add_three;
 use crate::dynamics::forces::close_range;
-use crate::fluid::configuration::{Configuration, targets};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::induced::add_three;
 use crate::fluid::near::preimage::Source;
+use crate::geometry::nodes::targets;
 use crate::scene::Repulsion;
 
 /// d^(−α/2) for the square of a distance; even integer exponents by multiplication.

@@ -6,7 +6,7 @@ use crate::base::elementary::{atan2, cln_1p, csqrt, product, quotient, sin_cos};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{at, put};
 use crate::base::scalar::Real;
-use crate::fluid::near::Preimage;
+use crate::fluid::near::buffers::Preimage;
 use crate::fluid::near::preimage::{Roots, Source, Targets, reach};
 use crate::geometry::curve::Ellipse;
 use crate::geometry::grading::{LANES, Offset};

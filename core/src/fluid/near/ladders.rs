@@ -7,12 +7,12 @@
 use crate::base::complex::{Complex, cabs};
 use crate::base::memory::{at, part, part_mut, put};
 use crate::base::scalar::Real;
-use crate::fluid::configuration::Poses;
 use crate::fluid::contact::{Placed, apart, closest_points, foot};
+use crate::fluid::near::buffers::{LADDER_LIST, MOST_LADDERS};
 use crate::fluid::near::preimage::wrapped;
-use crate::fluid::near::{LADDER_LIST, MOST_LADDERS};
 use crate::geometry::curve::Curve;
 use crate::geometry::grading::Ladder;
+use crate::geometry::pose::Poses;
 use crate::model::Model;
 
 /// Scale at which a ladder at a closest point has faded out: its own, by which these ladders are known.
@@ -81,7 +81,7 @@ fn push<R: Real>(lists: &mut [R], boundary: usize, mut ladder: Ladder<R>) {
 /// Ladders in the list of a boundary.
 pub(crate) fn listed<R: Real>(lists: &[R], boundary: usize) -> impl Iterator<Item = Ladder<R>> + '_ {
     let list = part(lists, boundary * LADDER_LIST, LADDER_LIST);
-    let count = crate::fluid::near::ladder_count(list);
+    let count = crate::fluid::near::buffers::ladder_count(list);
     part(list, 2, 3 * count).as_chunks::<3>().0.iter().map(|&[t, beta, top]| Ladder { t, beta, top })
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &
 
 /// Fades ladders of tips and their feet where a closest point already asks for as much: mostly it lies at the tip itself.
 fn thin<R: Real>(list: &mut [R]) {
-    let count = crate::fluid::near::ladder_count(list);
+    let count = crate::fluid::near::buffers::ladder_count(list);
     let at_closest_point = |top: R| top == R::lit(TOP);
     for i in 0..count {
         let &[t, beta, top] = part(list, 2 + 3 * i, 3) else { continue };
@@ -158,7 +158,7 @@ pub(crate) fn place_pair<R: Real>(
         }
     });
     for ((at, place), (beside, other)) in [((i, a), (j, b)), ((j, b), (i, a))] {
-        for &t in part(store, place.record.tips_at, place.record.tips) {
+        for &t in part(store, place.record.slots.tips_at, place.record.tips) {
             let tip = site(place, store, t);
             let (opposite, d) = foot(other, store, place.point(store, t));
             let flank = site(other, store, opposite);

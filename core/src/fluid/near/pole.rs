@@ -13,7 +13,7 @@ use crate::base::complex::{Complex, complex};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{copy, part};
 use crate::base::scalar::Real;
-use crate::fluid::near::Preimage;
+use crate::fluid::near::buffers::Preimage;
 
 /// Reals of the table of one boundary: cos and sin of rπ/N for 2N values of r, modulo N.
 pub(crate) fn table_len(nodes: usize) -> Option<usize> {

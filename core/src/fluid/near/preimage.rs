@@ -8,52 +8,17 @@
 use crate::base::complex::{Complex, cabs, cln, complex, dot};
 use crate::base::elementary::{exp_m1, quotient, sin_cos};
 use crate::base::memory::{at, copy, part_mut};
+use crate::base::once::once;
 use crate::base::scalar::Real;
-use crate::fluid::configuration::{Configuration, Poses, relative};
-use crate::fluid::near::{NearMut, PREIMAGES};
+use crate::fluid::configuration::Configuration;
+use crate::fluid::near::buffers::Preimage;
+use crate::fluid::near::buffers::{NearMut, PREIMAGES};
 use crate::geometry::curve::{Curve, OutlineView};
 use crate::geometry::grading::Offset;
+use crate::geometry::nodes::Nodes;
+use crate::geometry::pose::{Poses, relative};
 use crate::model::Model;
-use crate::model::boundary::{BoundaryRecord, Nodes};
-
-/// A preimage near the real axis, as the pole term of its row needs it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Preimage<R> {
-    /// Node j from which x = s* − s_j is counted.
-    pub node: usize,
-    /// Sign of Im x.
-    pub sign: R,
-    /// tan(x/2).
-    pub tangent: Complex<R>,
-    /// (π/N) (−1)^j e^(iσNx/2).
-    pub factor: Complex<R>,
-    /// dx/dz.
-    pub rate: Complex<R>,
-}
-
-impl<R: Real> Preimage<R> {
-    /// Reals that hold one: σ (node + 1) (0: none), tangent, factor, rate.
-    pub(crate) const REALS: usize = 7;
-
-    #[inline]
-    pub(crate) fn read(data: &[R]) -> Option<Self> {
-        match data {
-            &[node, tr, ti, fr, fi, rr, ri] if node != R::zero() => Some(Preimage {
-                node: node.abs().to_f64() as usize - 1,
-                sign: if node < R::zero() { -R::one() } else { R::one() },
-                tangent: complex(tr, ti),
-                factor: complex(fr, fi),
-                rate: complex(rr, ri),
-            }),
-            _ => None,
-        }
-    }
-
-    fn reals(&self) -> [R; 7] {
-        let (t, f, r) = (self.tangent, self.factor, self.rate);
-        [self.sign * R::count(self.node + 1), t.re, t.im, f.re, f.im, r.re, r.im]
-    }
-}
+use crate::model::boundary::BoundaryRecord;
 
 /// The pole term falls like (π/N) e^(−N |Im x|/2) and acts on what is left of the density at the end of its spectrum, which by then
 /// has fallen as much: beyond this exponent, e^(−20) in double precision, nothing of it is seen (with e^(−17) it is, in the 13th
@@ -113,19 +78,26 @@ impl<R: Real, const L: usize> Completed<R, L> {
     }
 }
 
-impl<R: Real> Source<'_, R> {
+impl<'a, R: Real> Source<'a, R> {
+    /// A boundary with its own nodes.
+    pub(crate) fn of(record: &'a BoundaryRecord<R>, store: &'a [R]) -> Self {
+        Source { record, nodes: record.nodes(store), view: record.view(store), table: record.table(store) }
+    }
+}
+
+once! {
     /// Calls `visit` with (row, preimage) for every preimage of the targets that needs a pole term, at most two to a row.
-    pub(crate) fn each_preimage(&self, targets: &Targets<'_, R>, mut visit: impl FnMut(usize, Preimage<R>)) {
-        R::each_preimage(self, targets, &mut visit);
-    }
-
-    pub(crate) fn each_preimage_here(&self, targets: &Targets<'_, R>, visit: impl FnMut(usize, Preimage<R>)) {
-        if let Curve::Ellipse(e) = &self.view.curve {
-            return self.on_ellipse(*e, targets, visit);
+    pub(crate) fn each_preimage['a, 'b: 'a](
+        source: &'a Source<'b, R>, targets: &'a Targets<'b, R>, visit: &'a mut (dyn FnMut(usize, Preimage<R>) + 'a),
+    ) {
+        match &source.view.curve {
+            Curve::Ellipse(e) => source.on_ellipse(*e, targets, visit),
+            _ => source.search(targets, visit),
         }
-        self.search(targets, visit);
     }
+}
 
+impl<R: Real> Source<'_, R> {
     /// Real part and magnitude of the imaginary part of the preimage of z next to the boundary; `None` where it is too far to
     /// matter for the trapezoidal rule.
     pub(crate) fn footprint(&self, z: Complex<R>) -> Option<(R, R)> {
@@ -191,7 +163,7 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
     if preimages.is_empty() {
         return;
     }
-    let view = crate::fluid::near::Near { nodes, rungs, ladders, preimages: &[], unknowns: *unknowns };
+    let view = crate::fluid::near::buffers::Near { nodes, rungs, ladders, preimages: &[], unknowns: *unknowns };
     let c = Configuration { model: *model, poses, near: view };
     let walls_anew = c.walls_regraded();
     for (j, record, nodes) in c.each_boundary() {
@@ -217,7 +189,7 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
             };
             rows.fill(R::zero());
             let targets = Targets { nodes: points, turn, shift, own: i == j };
-            source.each_preimage(&targets, |row, p| {
+            each_preimage(&source, &targets, &mut |row, p| {
                 let slots = part_mut(rows, row * PREIMAGES, PREIMAGES).chunks_exact_mut(Preimage::<R>::REALS);
                 if let Some(slot) = slots.into_iter().find(|slot| at(slot, 0) == R::zero()) {
                     copy(slot, &p.reals());

@@ -3,12 +3,13 @@
 use crate::base::memory::{part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::Result;
+use crate::fluid::near::buffers::{COLUMNS, LADDER_LIST, NearMut};
 use crate::fluid::near::ladders::listed;
-use crate::fluid::near::{COLUMNS, LADDER_LIST, NearMut};
 use crate::geometry::curve::OutlineView;
 use crate::geometry::grading::{Grading, Ladder, write_fitting};
+use crate::geometry::nodes::write_nodes;
 use crate::model::Model;
-use crate::model::boundary::{BoundaryRecord, write_nodes};
+use crate::model::boundary::BoundaryRecord;
 
 /// Rewrites grading and nodes of every boundary with ladders; the others keep the model's.
 ///
@@ -23,7 +24,7 @@ pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) 
         if need <= R::zero() {
             continue;
         }
-        let rungs = part_mut(near.rungs, b.rungs_at, b.rungs_len);
+        let rungs = part_mut(near.rungs, b.slots.rungs_at, b.slots.rungs_len);
         // With no need left the top comes down to the scale itself, and the rungs fade.
         let faded = |l: Ladder<R>| Ladder { top: l.beta * (l.top / l.beta).powf(need), ..l };
         let ladders = b.ladders(model.store).chain(listed(near.ladders, i).map(faded));

@@ -5,8 +5,9 @@ use crate::base::complex::{Complex, cabs, complex, csin_cos, dot};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::at;
 use crate::base::scalar::Real;
+use crate::fluid::near::buffers::Preimage;
 use crate::fluid::near::pole::{self, LANES, load};
-use crate::fluid::near::preimage::{Preimage, Roots, Source, Targets, wrapped};
+use crate::fluid::near::preimage::{Roots, Source, Targets, wrapped};
 use crate::geometry::grading::Offset;
 
 /// Up to two preimages.

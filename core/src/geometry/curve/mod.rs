@@ -26,7 +26,7 @@ use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::base::status::Result;
-use crate::geometry::grading::{Grading, Ladder, write_fitting};
+use crate::geometry::grading::{Grading, Ladder, walk, write_fitting};
 use polygon::CORNER;
 use polyline::cross;
 
@@ -191,7 +191,7 @@ impl<R: Real> OutlineView<'_, R> {
 
     /// Calls `visit` with `n` nodes in turn.
     pub(crate) fn walk(&self, n: usize, mut visit: impl FnMut(Node<R>)) -> Result<()> {
-        self.grading.walk(n, |jet| visit(self.node_of(jet)))
+        walk(&self.grading, n, &mut |jet| visit(self.node_of(jet)))
     }
 
     /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule in s, exact to

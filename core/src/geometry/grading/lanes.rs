@@ -5,6 +5,7 @@
 use super::Grading;
 use crate::base::elementary::{atan2, catan, ln_1p, nearest, product, quotient, sin_cos, small_sine};
 use crate::base::machine::{Machine, Task};
+use crate::base::once::once;
 use crate::base::scalar::Real;
 use crate::base::status::Result;
 
@@ -29,6 +30,36 @@ pub(crate) struct Offset<R, const L: usize> {
     pub sin: [[R; L]; 2],
     /// cos(u/2).
     pub cos: [[R; L]; 2],
+}
+
+once! {
+    /// Calls `visit` with t, ds/dt and d²s/dt² of `n` nodes in turn, s = 2πk/n.
+    ///
+    /// # Errors
+    /// `Internal` if a node could not be placed to rounding.
+    pub(crate) fn walk['a, 'b: 'a](grading: &'a Grading<'b, R>, n: usize, visit: &'a mut (dyn FnMut([R; 3]) + 'a)) -> Result<()> {
+        let step = R::TAU / R::count(n.max(1));
+        let mut last = [R::zero(), R::zero()];
+        for first in (0..n).step_by(LANES) {
+            let mut chunk =
+                Chunk { t: [R::zero(); LANES], slope: [R::one(); LANES], bend: [R::zero(); LANES], settled: false };
+            let s = core::array::from_fn(|i| step * R::count(first + i));
+            Machine::here().run(Place { grading, s, start: last, out: &mut chunk });
+            if first == 0 {
+                chunk.t[0] = R::zero();
+            }
+            for i in 0..LANES.min(n - first) {
+                if !chunk.settled {
+                    let guess = if chunk.t[i].is_finite() { chunk.t[i] } else { s[i] };
+                    chunk.t[i] = grading.inverse(s[i], guess)?;
+                    [_, chunk.slope[i], chunk.bend[i]] = grading.jet(chunk.t[i]);
+                }
+                visit([chunk.t[i], chunk.slope[i], chunk.bend[i]]);
+            }
+            last = [s[LANES - 1], chunk.t[LANES - 1]];
+        }
+        Ok(())
+    }
 }
 
 impl<R: Real> Grading<'_, R> {
@@ -68,38 +99,6 @@ impl<R: Real> Grading<'_, R> {
             sum[1] -= slope * s * c * inverse;
         }
         sum
-    }
-
-    /// Calls `visit` with t, ds/dt and d²s/dt² of `n` nodes in turn, s = 2πk/n.
-    ///
-    /// # Errors
-    /// `Internal` if a node could not be placed to rounding.
-    pub(crate) fn walk(&self, n: usize, mut visit: impl FnMut([R; 3])) -> Result<()> {
-        R::walk(self, n, &mut visit)
-    }
-
-    pub(crate) fn walk_here(&self, n: usize, visit: &mut dyn FnMut([R; 3])) -> Result<()> {
-        let step = R::TAU / R::count(n.max(1));
-        let mut last = [R::zero(), R::zero()];
-        for first in (0..n).step_by(LANES) {
-            let mut chunk =
-                Chunk { t: [R::zero(); LANES], slope: [R::one(); LANES], bend: [R::zero(); LANES], settled: false };
-            let s = core::array::from_fn(|i| step * R::count(first + i));
-            Machine::here().run(Place { grading: self, s, start: last, out: &mut chunk });
-            if first == 0 {
-                chunk.t[0] = R::zero();
-            }
-            for i in 0..LANES.min(n - first) {
-                if !chunk.settled {
-                    let guess = if chunk.t[i].is_finite() { chunk.t[i] } else { s[i] };
-                    chunk.t[i] = self.inverse(s[i], guess)?;
-                    [_, chunk.slope[i], chunk.bend[i]] = self.jet(chunk.t[i]);
-                }
-                visit([chunk.t[i], chunk.slope[i], chunk.bend[i]]);
-            }
-            last = [s[LANES - 1], chunk.t[LANES - 1]];
-        }
-        Ok(())
     }
 
     /// |Im s| at complex parameters t, W = e^(it), of which |W|² is given too: Im S(v; b) = Im v + ln |1 − e^(iv − b)|

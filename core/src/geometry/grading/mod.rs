@@ -14,7 +14,7 @@ use crate::base::status::{Error, Result, Status};
 
 mod lanes;
 
-pub(crate) use lanes::{LANES, Offset};
+pub(crate) use lanes::{LANES, Offset, walk};
 
 /// Reals of a rung: place p, sin(p/2), weight, e^(−b/2), sinh(b/2), sinh(b)/2, cos(p/2), of the scale b.
 pub(crate) const RUNG: usize = 7;
