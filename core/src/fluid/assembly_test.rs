@@ -9,13 +9,15 @@ use crate::fluid::assembly::assemble;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::near::buffers::Near;
 use crate::fluid::near::pole;
+use crate::fluid::near::preimage::Source;
 use crate::fluid::potentials::{add_interior_potential, fill_flux};
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
 use crate::geometry::pose::Poses;
 use crate::linear::lu::{Factors, factor};
-use crate::model::boundary::{BoundaryRecord, fill_nodes};
+use crate::model::boundary::{BoundaryRecord, Slots};
 use crate::scene::{Body, Link, Mass, Quadrature, Root, Scene, Shape, Wall};
 use crate::setup::owned::{ModelBuf, SimBuf};
+use crate::setup::records::fill_nodes;
 use crate::simulation::sim::{Method, Sim};
 use std::sync::Arc;
 use std::vec;
@@ -43,17 +45,14 @@ fn self_block(shape: &Shape<'_, f64>, nodes: usize) -> (Rows, Rows, Vec<Complex<
     let mut record = BoundaryRecord {
         nodes,
         outline,
-        store_len,
-        table_at: store_len,
-        table_len,
-        data_at,
+        slots: Slots { store_len, table_at: store_len, table_len, data_at, ..Slots::default() },
         link: Some(0),
         ..Default::default()
     };
     fill_nodes(&mut record, &mut store).unwrap();
     // With sign +1: A = 1 − Im W/π.
     let (mut a, mut g) = (vec![0.0; nodes * nodes], vec![0.0; nodes * nodes]);
-    let source = record.source(&store);
+    let source = Source::of(&record, &store);
     let (mut matrix, mut regular) =
         (Block { data: &mut a, ld: nodes, at: 0 }, Block { data: &mut g, ld: nodes, at: 0 });
     fill_self_block(&source.nodes, 1.0, 0.0, &mut matrix, &mut regular);

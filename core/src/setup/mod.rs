@@ -6,6 +6,6 @@ mod items;
 mod layout;
 #[cfg(feature = "alloc")]
 pub(crate) mod owned;
-mod records;
+pub(crate) mod records;
 mod traits;
 mod validate;

@@ -281,7 +281,7 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
 }
 
 /// Fills the node arrays of a boundary whose frame origin is known, its reach and spacing, and its table of pole terms.
-fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R]) -> Result<()> {
+pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R]) -> Result<()> {
     let n = record.nodes;
     let (outlines, data) = store.split_at_mut_checked(record.slots.data_at).ok_or(Status::Internal)?;
     let (reach, speed) = write_nodes(&record.view(outlines), record.origin, n, data)?;
