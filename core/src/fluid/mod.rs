@@ -5,6 +5,7 @@ pub(crate) mod assembly;
 mod assembly_test;
 pub(crate) mod configuration;
 pub(crate) mod contact;
+pub(crate) mod gap;
 pub(crate) mod induced;
 pub(crate) mod near;
 pub(crate) mod pair_pass;

@@ -5,7 +5,7 @@ use crate::base::features;
 use crate::base::memory::{copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
-use crate::fluid::contact::Placed;
+use crate::fluid::gap::Placed;
 use crate::fluid::near::buffers::LADDER_LIST;
 use crate::fluid::near::ladders;
 use crate::fluid::near::pole;
@@ -139,7 +139,7 @@ fn core_of<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &[R
     }
     let nodes = record.nodes(store);
     let clearance = |z: Complex<R>| {
-        if crate::fluid::contact::encloses(&nodes, z) {
+        if crate::fluid::gap::encloses(&nodes, z) {
             nodes.points().fold(R::MAX, |d, x| d.min(cabs(x - z)))
         } else {
             -R::one()

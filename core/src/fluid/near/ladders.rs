@@ -7,7 +7,7 @@
 use crate::base::complex::{Complex, cabs};
 use crate::base::memory::{at, part, part_mut, put};
 use crate::base::scalar::Real;
-use crate::fluid::contact::{Placed, apart, closest_points, foot};
+use crate::fluid::gap::{Placed, apart, closest_points, foot};
 use crate::fluid::near::buffers::{LADDER_LIST, MOST_LADDERS};
 use crate::fluid::near::preimage::wrapped;
 use crate::geometry::curve::Curve;
