@@ -85,7 +85,7 @@ fn against_getrf(lapack: &Lapack, mut evaluation: Evaluation<f64>, order: usize)
 fn factorization(lapack: &Lapack, order: usize) -> Measured {
     let ld = order + 8;
     let a = diagonal_dominant(order, ld);
-    let (mut copy, mut pivots) = (a.clone(), vec![0.0; order]);
+    let (mut copy, mut pivots) = (a.clone(), vec![0u64; order]);
     let mut measured = beside_getrf(lapack, order, &mut || {
         copy.copy_from_slice(&a);
         nekton::lu::factor(&mut copy, ld, order, &mut pivots).expect("far from singular");

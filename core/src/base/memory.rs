@@ -13,27 +13,36 @@ pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T
     Ok(head)
 }
 
+/// The same as elements of another type of the same size.
+pub(crate) fn take_as<'a, R: Real, T: bytemuck::Pod>(rest: &mut &'a mut [R], n: usize) -> Result<&'a mut [T]> {
+    bytemuck::try_cast_slice_mut(take(rest, n)?).map_err(|_| Status::Internal.into())
+}
+
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part<T>(data: &[T], at: usize, n: usize) -> &[T] {
+    debug_assert!(n == 0 || at + n <= data.len(), "{at} + {n} of {}", data.len());
     at.checked_add(n).and_then(|end| data.get(at..end)).unwrap_or(&[])
 }
 
 /// The elements `at .. at + n`, or an empty slice when they are not all there.
 #[inline]
 pub(crate) fn part_mut<T>(data: &mut [T], at: usize, n: usize) -> &mut [T] {
+    debug_assert!(n == 0 || at + n <= data.len(), "{at} + {n} of {}", data.len());
     at.checked_add(n).and_then(|end| data.get_mut(at..end)).unwrap_or(&mut [])
 }
 
 /// The element at `i`; NaN when there is none, so that a mistake shows in the result and cannot panic.
 #[inline]
 pub(crate) fn at<R: Real>(data: &[R], i: usize) -> R {
+    debug_assert!(i < data.len(), "{i} of {}", data.len());
     data.get(i).copied().unwrap_or(R::NAN)
 }
 
 /// Writes the element at `i`, if it is there.
 #[inline]
 pub(crate) fn put<R: Real>(data: &mut [R], i: usize, value: R) {
+    debug_assert!(i < data.len(), "{i} of {}", data.len());
     if let Some(x) = data.get_mut(i) {
         *x = value;
     }
@@ -42,14 +51,16 @@ pub(crate) fn put<R: Real>(data: &mut [R], i: usize, value: R) {
 /// Adds to the element at `i`, if it is there.
 #[inline]
 pub(crate) fn add<R: Real>(data: &mut [R], i: usize, value: R) {
+    debug_assert!(i < data.len(), "{i} of {}", data.len());
     if let Some(x) = data.get_mut(i) {
         *x += value;
     }
 }
 
-/// Copies element by element, as far as both reach.
+/// Copies element by element; both have the same length.
 #[inline]
 pub(crate) fn copy<T: Copy>(to: &mut [T], from: &[T]) {
+    debug_assert_eq!(to.len(), from.len());
     for (t, f) in to.iter_mut().zip(from) {
         *t = *f;
     }
@@ -85,12 +96,14 @@ pub(crate) fn axpy<R: Real>(y: &mut [R], a: R, x: &[R]) {
 
 /// Declares a bundle of buffers that live one after the other in a slab of reals.
 ///
-/// `buffers! { struct Name(dims: Dims) { field: length, … } }` makes `Name<'a, R>` with
-/// `Name::len(&dims)` and `Name::split(&dims, slab)`.
+/// `buffers! { struct Name(dims: Dims) { field: Type = length, … } }` makes `Name<'a, R>` with `Name::len(&dims)` and
+/// `Name::take(&dims, &mut slab)`; the type is `R`, or `R::Index` for whole numbers.
 macro_rules! buffers {
-    ($(#[$doc:meta])* $vis:vis struct $name:ident($dims:ident: $dty:ty) { $( $(#[$fdoc:meta])* $field:ident: $len:expr, )* }) => {
+    ($(#[$doc:meta])* $vis:vis struct $name:ident($dims:ident: $dty:ty) {
+        $( $(#[$fdoc:meta])* $field:ident: $type:ty = $len:expr, )*
+    }) => {
         $(#[$doc])*
-        $vis struct $name<'a, R> { $( $(#[$fdoc])* pub $field: &'a mut [R], )* }
+        $vis struct $name<'a, R: $crate::base::scalar::Real> { $( $(#[$fdoc])* pub $field: &'a mut [$type], )* }
         impl<'a, R: $crate::base::scalar::Real> $name<'a, R> {
             /// Number of reals needed.
             #[allow(unused_variables)]
@@ -99,11 +112,10 @@ macro_rules! buffers {
                 $( let n: usize = $len; let total = total.checked_add(n)?; )*
                 Some(total)
             }
-            /// Splits a slab of at least `len` reals.
-            #[allow(unused_variables, unused_mut, unused_assignments)]
-            $vis fn split($dims: &$dty, slab: &'a mut [R]) -> $crate::base::status::Result<Self> {
-                let mut rest = slab;
-                $( let $field = $crate::base::memory::take(&mut rest, $len)?; )*
+            /// Takes them from the front of a slab of at least `len` reals.
+            #[allow(unused_variables)]
+            $vis fn take($dims: &$dty, slab: &mut &'a mut [R]) -> $crate::base::status::Result<Self> {
+                $( let $field = $crate::base::memory::take_as::<R, $type>(slab, $len)?; )*
                 Ok($name { $($field,)* })
             }
         }

@@ -4,6 +4,7 @@ pub(crate) mod bits;
 pub(crate) mod complex;
 pub(crate) mod elementary;
 pub(crate) mod features;
+pub(crate) mod index;
 pub(crate) mod lanes;
 pub(crate) mod machine;
 pub(crate) mod memory;

@@ -4,6 +4,7 @@
 //! same bits whichever features it was built with.
 
 use crate::base::bits::Bits;
+pub use crate::base::index::Index;
 use crate::base::machine::Vectors;
 use core::fmt::{Debug, Display};
 use core::ops::Neg;
@@ -33,6 +34,7 @@ pub trait Real:
     sealed::Sealed
     + Vectors
     + Bits
+    + bytemuck::Pod
     + Copy
     + Default
     + PartialOrd
@@ -44,6 +46,8 @@ pub trait Real:
     + NumAssign
     + Neg<Output = Self>
 {
+    /// Whole numbers of the same size.
+    type Index: Index;
     /// Not a number; the value that an access out of range yields.
     const NAN: Self;
     /// Distance from 1 to the next larger number.
@@ -141,9 +145,10 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($t:ident, $which:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $ln:ident, $ln1p:ident, $atan2:ident, $pow:ident,
+    ($t:ident, $index:ident, $which:ident, $sqrt:ident, $sincos:ident, $exp:ident, $expm1:ident, $ln:ident, $ln1p:ident, $atan2:ident, $pow:ident,
      $hypot:ident, $floor:ident) => {
         impl Real for $t {
+            type Index = $index;
             #[inline(always)]
             fn which<T: Of>(x: T::With<Self>) -> Which<T> {
                 Which::$which(x)
@@ -219,5 +224,5 @@ macro_rules! real {
         }
     };
 }
-real!(f64, Double, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor);
-real!(f32, Single, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf);
+real!(f64, u64, Double, sqrt, sincos, exp, expm1, log, log1p, atan2, pow, hypot, floor);
+real!(f32, u32, Single, sqrtf, sincosf, expf, expm1f, logf, log1pf, atan2f, powf, hypotf, floorf);

@@ -2,23 +2,22 @@
 //! computed once and no boundary system is solved while stepping (Kirchhoff's equations).
 
 use crate::base::complex::{Complex, cis, cln, complex, dot, perp};
-use crate::base::memory::{add, at, copy, part_mut, put, take};
+use crate::base::memory::{add, at, copy, part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
-use crate::dynamics::evaluation::{Counters, Work};
+use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
+use crate::fluid::configuration::Configuration;
 use crate::fluid::near::preimage::Source;
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
-use crate::geometry::pose::put_pose;
-use crate::geometry::pose::twist_of;
-use crate::geometry::pose::{Pose, Twist};
+use crate::geometry::pose::{Pose, Twist, put_pose, put_three, twist_of};
 use crate::linear::ldl;
 use crate::linear::lu::{Factors, factor};
 use crate::model::boundary::BoundaryRecord;
 use crate::model::{LinkRecord, Model};
 
-impl<R: Real> Work<'_, R> {
+impl<R: Real> Evaluation<'_, R> {
     /// Accelerations of a lone body by Kirchhoff's equations, M (q̈ − J q̇) + J p + f = 0 with p = M q̇, in its own frame, where
-    /// M and its inverse are constant: what [`Work::evaluate`] gives, which fills every buffer.
+    /// M and its inverse are constant: what [`Evaluation::evaluate`] gives, which fills every buffer.
     pub(crate) fn evaluate_lone(
         &mut self,
         model: &Model<'_, R>,
@@ -27,6 +26,7 @@ impl<R: Real> Work<'_, R> {
         counters: &mut Counters,
     ) -> Result<[R; 3]> {
         counters.evaluations += 1;
+        self.kept.shown = false;
         let (&[x, y, heading], &[dx, dy, spin]) = (p, dp) else { return Err(Status::Internal.into()) };
         if ![x, y, heading, dx, dy, spin].iter().all(|x| x.is_finite()) {
             return Err(Status::NonFiniteState.into());
@@ -37,10 +37,10 @@ impl<R: Real> Work<'_, R> {
         }
         let mut outer = Twist::default();
         if head.plan.gravity || head.plan.circulation {
-            copy(self.qd, dp);
-            put_pose(self.poses, 0, &Pose { origin: complex(x, y), turn });
+            copy(self.velocity.qd, dp);
+            put_pose(self.placement.poses, 0, &Pose { origin: complex(x, y), turn });
             self.outer_forces(model);
-            outer = twist_of(self.outer, 0);
+            outer = twist_of(self.forces.outer, 0);
         }
         let linear = turn.conj() * complex(dx, dy);
         let momentum = times(&head.lone_added_mass, &Twist { linear, angular: spin });
@@ -54,7 +54,7 @@ impl<R: Real> Work<'_, R> {
         };
         let acceleration = times(&head.lone_inverse, &force);
         let linear = turn * acceleration.linear;
-        copy(self.indicators, &[head.lone_resolution[0], R::zero()]);
+        self.kept.indicators = Indicators { mass: head.lone_resolution[0], ..Indicators::default() };
         let found = [linear.re, linear.im, acceleration.angular];
         if found.iter().all(|x| x.is_finite()) { Ok(found) } else { Err(Status::NonFiniteState.into()) }
     }
@@ -107,7 +107,7 @@ pub(crate) fn constants<R: Real>(
     let h = nodes.step;
     let mut rest = scratch;
     let system = take(&mut rest, n * n + 4 * n)?;
-    let pivots = take(&mut rest, n)?;
+    let pivots = take_as(&mut rest, n)?;
     let regular = if circulation { take(&mut rest, n * n)? } else { &mut [] };
     let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
     let source = Source::of(body, store);
@@ -171,4 +171,26 @@ pub(crate) fn constants<R: Real>(
     let difference = (b - d).abs().max((c - g).abs() / body.reach).max((f - i).abs() / body.reach);
     let asymmetry = if size > R::zero() { difference / size } else { R::zero() };
     Ok(([a, bd, cg, bd, e, fi, cg, fi, j], impulse, [asymmetry, quadrature]))
+}
+
+/// Fluid momentum of a lone body with velocity `v` (three reals, world): its constant added mass, turned.
+pub(crate) fn lone_momentum<R: Real>(c: &Configuration<'_, R>, v: &[R], out: &mut [R]) {
+    let (turn, density) = (c.pose(0), c.model.head.fluid_density);
+    let v = twist_of(v, 0);
+    let own = Twist { linear: turn.unturned(v.linear), ..v };
+    let momentum = times(&c.model.head.lone_added_mass, &own);
+    put_three(out, 0, turn.turned(momentum.linear) * density, momentum.angular * density);
+}
+
+/// −G q̇ of a lone body: its circulation impulse turns with it.
+pub(crate) fn add_lone_circulation<R: Real>(c: &Configuration<'_, R>, qd: &[R], force: &mut [R]) {
+    let Some((body, _)) = c.boundary(0) else { return };
+    let [px, py, _] = c.model.head.lone_impulse;
+    let p = c.pose(0).turned(complex(px, py));
+    let v = twist_of(qd, 0);
+    let linear = perp(v.linear) * body.circulation - perp(p) * v.angular;
+    let angular = v.linear.im * p.re - v.linear.re * p.im;
+    let f = twist_of(force, 0);
+    let density = c.model.head.fluid_density;
+    put_three(force, 0, f.linear - linear * density, f.angular - angular * density);
 }

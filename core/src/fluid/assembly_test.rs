@@ -4,15 +4,12 @@
 extern crate std;
 use crate::base::complex::{Complex, cabs, complex};
 use crate::base::scalar::Real;
-use crate::dynamics::evaluation::configuration;
 use crate::fluid::assembly::assemble;
 use crate::fluid::configuration::Configuration;
-use crate::fluid::near::buffers::Near;
 use crate::fluid::near::pole;
 use crate::fluid::near::preimage::Source;
 use crate::fluid::potentials::{add_interior_potential, fill_flux};
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
-use crate::geometry::pose::Poses;
 use crate::linear::lu::{Factors, factor};
 use crate::model::boundary::{BoundaryRecord, Slots};
 use crate::scene::{Body, Link, Mass, Quadrature, Root, Scene, Shape, Wall};
@@ -172,7 +169,7 @@ fn assembled(in_tank: bool, quadrature: Quadrature) -> Assembled {
 /// What an evaluation sees of the state shown.
 fn at_rest<T>(sim: &mut Sim<'_, f64>, then: impl FnOnce(&Configuration<'_, f64>) -> T) -> T {
     sim.refresh().unwrap();
-    then(&configuration!(sim.work, &sim.model))
+    then(&sim.evaluation.placement.configuration(&sim.model))
 }
 
 const BOTH: [Quadrature; 2] = [Quadrature::Graded, Quadrature::Plain];
@@ -269,7 +266,7 @@ fn density_form_gives_the_potential_of_the_direct_formulation() {
         let mut a = assembled(in_tank, Quadrature::Plain);
         let n = a.nodes.len();
         let mut matrix = a.matrix.clone();
-        let mut pivots = vec![0.0; n];
+        let mut pivots = vec![0; n];
         factor(&mut matrix, n, n, &mut pivots).unwrap();
         let factors = Factors { lu: &matrix, ld: n, pivots: &pivots };
         // Motion of both bodies, in their own frames.

@@ -11,7 +11,7 @@ use crate::model::boundary::BoundaryRecord;
 
 /// Model, placements, and what near contact added to the model's own nodes.
 #[derive(Clone, Copy)]
-pub(crate) struct Configuration<'a, R> {
+pub(crate) struct Configuration<'a, R: Real> {
     pub model: Model<'a, R>,
     pub poses: Poses<'a, R>,
     pub near: Near<'a, R>,

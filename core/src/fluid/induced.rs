@@ -6,7 +6,7 @@
 use crate::base::complex::{Complex, complex, perp};
 use crate::base::lanes::{LANES, lanes, sum_of};
 use crate::base::machine::{Machine, Task};
-use crate::base::memory::{part, part_mut};
+use crate::base::memory::{buffers, part, part_mut};
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::near::buffers::Near;
@@ -15,14 +15,19 @@ use crate::geometry::nodes::{Nodes, fill_targets};
 use crate::geometry::pose::{Twist, twist_of};
 use crate::model::boundary::BoundaryRecord;
 
-/// Scratch of the pair passes: six vectors of length N.
-pub(crate) struct PairScratch<'a, R> {
-    pub fx: &'a mut [R],
-    pub fy: &'a mut [R],
-    pub zx: &'a mut [R],
-    pub zy: &'a mut [R],
-    pub hx: &'a mut [R],
-    pub hy: &'a mut [R],
+buffers! {
+    /// Scratch of the passes over pairs: six vectors of length N, of which nothing outlives a pass.
+    pub(crate) struct PairScratch(unknowns: usize) {
+        /// Nodes of the target in the source's frame.
+        zx: R = *unknowns,
+        zy: R = *unknowns,
+        /// What is induced there.
+        hx: R = *unknowns,
+        hy: R = *unknowns,
+        /// Weights times rates.
+        fx: R = *unknowns,
+        fy: R = *unknowns,
+    }
 }
 
 /// One ordered pair (target i, source j) as a pass sees it: nodes of the target in the source's frame and what
@@ -122,7 +127,7 @@ pub(crate) fn add_pole_velocity<R: Real>(
 }
 
 /// The loop of [`add_pole_velocity`].
-struct PoleVelocity<'a, 'b, R> {
+struct PoleVelocity<'a, 'b, R: Real> {
     near: Near<'a, R>,
     j: usize,
     first: usize,

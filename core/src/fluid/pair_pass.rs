@@ -27,7 +27,7 @@ once! {
     /// The pass over all pairs, per unit density: `rate = Im(ż ∘ D u)`, its transpose `transposed = Im((λ ż)ᵀ D)`, and
     /// `gradient_a = q̇ᵀ (∂M_h/∂q_a) q̇` without the turning of the frames. O(N²), one division per two pairs of nodes.
     pub(crate) fn pair_pass['a, 'b: 'a](
-        c: &'a Configuration<'b, R>, qd: &'a [R], density: &'a [R], adjoint: &'a [R], s: &'a mut PairScratch<'b, R>,
+        c: &'a Configuration<'a, R>, qd: &'a [R], density: &'a [R], adjoint: &'a [R], s: &'a mut PairScratch<'b, R>,
         out: PassResult<'a, R>,
     ) {
         out.rate.fill(R::zero());

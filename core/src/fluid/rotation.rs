@@ -3,7 +3,7 @@
 
 use crate::base::complex::{Complex, cis, complex, dot};
 use crate::base::features;
-use crate::base::memory::{part_mut, put, take};
+use crate::base::memory::{part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 use crate::fluid::near::pole;
@@ -28,7 +28,7 @@ pub(crate) fn fill_rotation_potential<R: Real>(
         let mut rest = scratch;
         let matrix = take(&mut rest, m * m + m)?;
         let regular = take(&mut rest, m * m)?;
-        let pivots = take(&mut rest, m)?;
+        let pivots = take_as(&mut rest, m)?;
         let data = take(&mut rest, 7 * m)?;
         let table = take(&mut rest, if record.slots.table_len > 0 { 4 * m } else { 0 })?;
         if features::NEAR && !table.is_empty() {

@@ -4,7 +4,7 @@
 //! Tested by `tests/near_contact`, `tests/reference_values`, `tests/gradients`.
 
 use crate::base::machine::{Machine, Task};
-use crate::base::memory::{at, axpy, inner, part, part_mut, put};
+use crate::base::memory::{axpy, inner, part, part_mut};
 use crate::base::once::once;
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
@@ -16,15 +16,16 @@ use crate::geometry::pose::{Twist, twist_of};
 use crate::linear::lu::{Factors, factor, factor_further};
 use crate::model::boundary::BoundaryRecord;
 
-/// The boundary system of one configuration in the caller's buffers.
-pub(crate) struct BoundarySystem<'a, R> {
+/// The boundary system of one configuration in the caller's buffers: A, column-major with leading dimension `ld`, and behind it the
+/// columns of right-hand sides; once solved, the factors and the densities. N unknowns.
+pub(crate) struct BoundarySystem<'a, R: Real> {
+    /// ld × (N + columns).
     pub matrix: &'a mut [R],
     pub ld: usize,
     pub unknowns: usize,
-    pub pivots: &'a mut [R],
+    pub pivots: &'a mut [R::Index],
+    /// Re G · N × N where there is circulation, else empty.
     pub regular: &'a mut [R],
-    /// Not 0 while the walls' own rows and columns of `matrix` hold their factors.
-    pub walls_ready: &'a mut [R],
 }
 
 impl<R: Real> BoundarySystem<'_, R> {
@@ -50,12 +51,13 @@ impl<R: Real> BoundarySystem<'_, R> {
 once! {
     /// Assembles, sets the first right-hand sides to −2 X v for the link-frame motions in `motions` (columns of
     /// three reals per link), factorizes and solves. `zx`, `zy`: scratch of length N. O(N³). The factors of the walls alone, which
-    /// come first, are kept: they are the model's as long as no wall has nodes of its own here.
+    /// come first, are kept (`walls_ready`): they are the model's as long as no wall has nodes of its own here.
     pub(crate) fn solve_columns['a, 'b: 'a](
-        system: &'a mut BoundarySystem<'b, R>, c: &'a Configuration<'a, R>, motions: &'a [R], zx: &'a mut [R], zy: &'a mut [R],
+        system: &'a mut BoundarySystem<'b, R>, walls_ready: &'a mut bool, c: &'a Configuration<'a, R>, motions: &'a [R],
+        zx: &'a mut [R], zy: &'a mut [R],
     ) -> Result<()> {
         let (walls, regraded) = (c.model.head.wall_nodes, c.walls_regraded());
-        let mut ready = at(system.walls_ready, 0) != R::zero() && !regraded;
+        let mut ready = *walls_ready && !regraded;
         assemble(c, ready, system.matrix, system.ld, system.regular, zx, zy);
         if walls > 0 && !regraded && !ready {
             ready = factor(part_mut(system.matrix, 0, walls * system.ld), system.ld, walls, system.pivots).is_ok();
@@ -63,7 +65,7 @@ once! {
                 assemble(c, false, system.matrix, system.ld, system.regular, zx, zy);
             }
         }
-        put(system.walls_ready, 0, if ready { R::one() } else { R::zero() });
+        *walls_ready = ready;
         let rows = 3 * c.model.links.len();
         let columns = motions.chunks_exact(rows.max(1)).len();
         let first = system.unknowns * system.ld;

@@ -2,7 +2,7 @@
 
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
-use super::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
+use super::system::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
 use crate::base::memory::{buffers, copy, part};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
@@ -46,15 +46,15 @@ pub struct Adams<R> {
 
 buffers! {
     struct Buffers(dim: usize) {
-        state: *dim,
-        rate: *dim,
+        state: R = *dim,
+        rate: R = *dim,
         /// The differences φ₁ … φₖ₊₂, unknown by unknown.
-        history: dim.saturating_mul(COLUMNS),
+        history: R = dim.saturating_mul(COLUMNS),
         /// The part of the state that `state` cannot hold.
-        rest: *dim,
-        trial: *dim, trial_rest: *dim, trial_rate: *dim,
+        rest: R = *dim,
+        trial: R = *dim, trial_rest: R = *dim, trial_rate: R = *dim,
         /// Estimated error of the last trial step.
-        error: *dim,
+        error: R = *dim,
     }
 }
 
@@ -109,7 +109,7 @@ impl<R: Real> Adams<R> {
     pub fn start(&mut self, t: R, y: &[R], work: &mut [R]) -> Result<()> {
         finite(t, "time")?;
         all_finite(y, Status::NotFinite, "state")?;
-        let b = Buffers::split(&y.len(), work)?;
+        let b = Buffers::take(&y.len(), &mut { work })?;
         copy(b.state, y);
         b.rest.fill(R::zero());
         b.rate.fill(R::NAN);
@@ -137,7 +137,7 @@ impl<R: Real> Adams<R> {
     /// Those of the right-hand side, `NonFiniteState`, `Length`, `MemoryTooSmall`; nothing is changed.
     pub fn prepare<S: System<R> + ?Sized>(&mut self, system: &mut S, work: &mut [R]) -> Result<()> {
         same_length(self.dim, system.dim())?;
-        let b = Buffers::split(&self.dim, work)?;
+        let b = Buffers::take(&self.dim, &mut { work })?;
         if self.prepared {
             return Ok(());
         }
@@ -208,7 +208,7 @@ impl<R: Real> Adams<R> {
             return Ok(());
         }
         self.prepare(system, work)?;
-        let mut b = Buffers::split(&self.dim, work)?;
+        let mut b = Buffers::take(&self.dim, &mut { work })?;
         let mut next = *self;
         let outcome = next.search(system, t_stop, &mut b);
         match outcome {

@@ -104,6 +104,8 @@ pub struct CoordinateRecord<R> {
     pub rest: R,
     /// Value and rate at the start, if free.
     pub start: [R; 2],
+    /// Which of the three reals of all links it moves: the first, and how many from there on.
+    pub(crate) moves: (usize, usize),
 }
 
 /// Sizes of what near contact needs in a simulation; 0 where it needs nothing.

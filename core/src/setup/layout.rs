@@ -3,7 +3,7 @@
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::forces::close_range;
-use crate::fluid::near::buffers::{LADDER_LIST, MOST_LADDERS, rung_allowance};
+use crate::fluid::near::buffers::{LADDERS, LISTS, MOST_LADDERS, rung_allowance};
 use crate::fluid::near::pole;
 use crate::fluid::rotation::{modes_len, potential_scratch};
 use crate::geometry::grading::grading_len;
@@ -106,7 +106,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
         slot(i, first, s);
     }
     if traits.graded && walls > 1 {
-        scratch = scratch.max(walls.checked_mul(LADDER_LIST).ok_or(Status::SizeOverflow)?);
+        scratch = scratch.max(walls.checked_mul(LISTS + LADDERS).ok_or(Status::SizeOverflow)?);
     }
     if fluid {
         (layout.walls_at, at) = (at, sum(at, square(layout.wall_nodes)?)?);

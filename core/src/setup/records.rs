@@ -2,11 +2,11 @@
 
 use crate::base::complex::{Complex, cabs, complex};
 use crate::base::features;
-use crate::base::memory::{copy, part, part_mut, put};
+use crate::base::memory::{copy, part, part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::fluid::gap::Placed;
-use crate::fluid::near::buffers::LADDER_LIST;
+use crate::fluid::near::buffers::{LADDERS, LISTS, LadderLists, listed};
 use crate::fluid::near::ladders;
 use crate::fluid::near::pole;
 use crate::fluid::near::preimage::Source;
@@ -105,20 +105,23 @@ fn list_ladders<R: Real>(record: &mut BoundaryRecord<R>, shape: &Shape<'_, R>, s
 }
 
 /// Ladders that walls cause on each other: placed once, they become permanent, and the nodes follow.
-pub(crate) fn grade_walls<R: Real>(walls: &mut [BoundaryRecord<R>], store: &mut [R], lists: &mut [R]) -> Result<()> {
-    let lists = part_mut(lists, 0, walls.len() * LADDER_LIST);
-    ladders::clear(lists);
+pub(crate) fn grade_walls<R: Real>(walls: &mut [BoundaryRecord<R>], store: &mut [R], scratch: &mut [R]) -> Result<()> {
+    let rest = &mut { scratch };
+    let ladders = take(rest, walls.len() * LADDERS)?;
+    let mut lists = LadderLists { lists: take_as(rest, walls.len() * LISTS)?, ladders };
+    lists.clear();
     let placed = |b, store| Placed { record: b, nodes: b.nodes(store), pose: b.pose };
     for (i, a) in walls.iter().enumerate() {
         for (j, b) in walls.iter().enumerate().skip(i + 1) {
-            ladders::place_pair(store, (i, &placed(a, store)), (j, &placed(b, store)), lists);
+            ladders::place_pair(store, (i, &placed(a, store)), (j, &placed(b, store)), &mut lists);
         }
     }
     for (i, b) in walls.iter_mut().enumerate() {
-        if crate::fluid::near::buffers::ladder_count(part(lists, i * LADDER_LIST, LADDER_LIST)) == 0 {
+        let mut listed = listed(lists.lists, lists.ladders, i).peekable();
+        if listed.peek().is_none() {
             continue;
         }
-        for l in ladders::listed(lists, i) {
+        for l in listed {
             copy(part_mut(store, b.slots.ladders_at + 3 * b.ladders, 3), &[l.t, l.beta, l.top]);
             b.ladders += 1;
         }
@@ -249,8 +252,12 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
     };
     for (b, body) in (0..scene.body_count()).filter_map(|b| Some((b, scene.body(b)?))) {
         let root = CoordinateRecord { link, ..CoordinateRecord::default() };
+        // A coordinate moves what hangs on its link at the most; a root's x moves no y and no θ, its θ not its own x and y.
+        let rows_end = 3 * (link + scene.link_count(b));
+        let moves = |first: usize, beyond: usize| (first, rows_end - beyond - first);
         for (k, (position, velocity)) in body.pose.into_iter().zip(body.velocity).enumerate() {
-            let record = CoordinateRecord { component: k, base: position, start: [position, velocity], ..root };
+            let moves = moves(3 * link + k, if k < 2 { 2 - k } else { 0 });
+            let record = CoordinateRecord { component: k, base: position, start: [position, velocity], moves, ..root };
             match body.root {
                 Root::Free => push(record, None),
                 Root::Prescribed(signals) => {
@@ -263,7 +270,8 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
             .map_err(|e| e.at(Place::Body(b)))?;
         }
         for (l, joint) in (0..scene.link_count(b)).filter_map(|l| Some((l, scene.link(b, l)?.joint?))) {
-            let joint_of = CoordinateRecord { link: link + l, component: 3, ..CoordinateRecord::default() };
+            let moves = moves(3 * (link + l), 0);
+            let joint_of = CoordinateRecord { link: link + l, component: 3, moves, ..CoordinateRecord::default() };
             let given = CoordinateRecord { control: Control::Prescribed, ..joint_of };
             match joint.drive {
                 Drive::Locked(value) => push(given, Some(Signal::Constant(value))),

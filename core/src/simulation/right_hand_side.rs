@@ -3,16 +3,16 @@
 use crate::base::memory::{at, copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::dynamics::evaluation::{Counters, Work};
+use crate::dynamics::evaluation::{Counters, Evaluation};
 use crate::fluid::contact::{first_misplaced, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::integrate::System;
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 
 /// The equations of motion as an integrator sees them.
-pub(crate) struct Motion<'s, 'a, R> {
+pub(crate) struct RightHandSide<'s, 'a, R: Real> {
     pub(crate) model: Model<'a, R>,
-    pub(crate) work: &'s mut Work<'a, R>,
+    pub(crate) evaluation: &'s mut Evaluation<'a, R>,
     pub(crate) impulse: [R; 3],
     /// Placements at the last accepted state: no trial state may lie beyond another body. `None` if there is no such state;
     /// then no body may lie inside another.
@@ -20,7 +20,7 @@ pub(crate) struct Motion<'s, 'a, R> {
     pub(crate) counters: &'s mut Counters,
 }
 
-impl<R: Real> Motion<'_, '_, R> {
+impl<R: Real> RightHandSide<'_, '_, R> {
     /// Splits a state into free coordinates and their rates (none for a lone swimmer: they follow from the impulse).
     fn parts<'y>(&self, y: &'y [R]) -> (&'y [R], &'y [R]) {
         split_state(&self.model, y)
@@ -33,7 +33,7 @@ pub(crate) fn split_state<'y, R: Real>(model: &Model<'_, R>, y: &'y [R]) -> (&'y
     (part(y, 0, n), rates)
 }
 
-impl<R: Real> System<R> for Motion<'_, '_, R> {
+impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
     fn dim(&self) -> usize {
         self.model.head.plan.state_len
     }
@@ -44,7 +44,7 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let n = model.head.plan.free_coordinates;
         if model.head.plan.formulation == Formulation::Kirchhoff {
             // Nothing to meet, no drive.
-            let accelerations = self.work.evaluate_lone(&model, p, dp, self.counters)?;
+            let accelerations = self.evaluation.evaluate_lone(&model, p, dp, self.counters)?;
             copy(part_mut(dydt, 0, n), dp);
             copy(part_mut(dydt, n, n), &accelerations);
             return Ok(());
@@ -52,23 +52,23 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         let zero = [R::zero(); 3];
         let dp = if locked { &zero } else { dp };
-        self.work.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
-        let poses = Poses(self.work.poses);
+        self.evaluation.evaluate(&model, &self.impulse, t, p, dp, self.counters)?;
+        let poses = Poses(self.evaluation.placement.poses);
         let contact = match self.anchor {
-            Some(anchor) => swept_contact(&model, anchor, poses, self.work.q),
+            Some(anchor) => swept_contact(&model, anchor, poses, self.evaluation.placement.q),
             None => first_misplaced(&model, poses),
         };
         if let Some((a, b)) = contact {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         for (i, c) in model.coordinates.iter().enumerate().filter(|(_, c)| c.control != Control::Prescribed) {
-            put(dydt, c.free, at(self.work.ds, i));
+            put(dydt, c.free, at(self.evaluation.coordinates.ds, i));
             if !locked {
-                put(dydt, n + c.free, at(self.work.dds, i));
+                put(dydt, n + c.free, at(self.evaluation.coordinates.dds, i));
             }
         }
         if model.head.tracks_work {
-            let power = self.work.power(&model, t);
+            let power = self.evaluation.power(&model, t);
             if let Some(last) = dydt.last_mut() {
                 *last = power;
             }
@@ -92,30 +92,5 @@ impl<R: Real> System<R> for Motion<'_, '_, R> {
         // The work of the drives acts on nothing.
         let Some(c) = model.coordinates.iter().find(own) else { return Some(R::MAX) };
         Some(if model.is_angle(c) { R::one() } else { model.reach_of(c) } / time)
-    }
-}
-
-/// Borrows a `Sim`'s parts as the equations of motion.
-macro_rules! motion {
-    ($sim:expr) => {
-        Motion {
-            model: $sim.model,
-            work: &mut $sim.work,
-            impulse: $sim.head.impulse,
-            anchor: Some(&*$sim.state.anchor),
-            counters: &mut $sim.head.counters,
-        }
-    };
-}
-
-pub(crate) use motion;
-
-impl<R: Real> Work<'_, R> {
-    /// Total linear impulse and angular impulse about the origin of the motion (p, ṗ), from scratch.
-    pub(crate) fn impulse_of_motion(&mut self, model: &Model<'_, R>, p: &[R], dp: &[R]) -> Result<[R; 3]> {
-        let mut counters = Counters::default();
-        self.place(model, R::zero(), p, dp)?;
-        self.prepare_motion(model, &mut counters)?;
-        Ok(self.total_impulse(model))
     }
 }

@@ -4,14 +4,14 @@
 use crate::base::memory::{at, buffers, copy, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
-use crate::dynamics::evaluation::{Counters, Dims, Work};
+use crate::dynamics::evaluation::{Counters, Dims, Evaluation, Kept};
 use crate::dynamics::indicators::Resolution;
 use crate::fluid::contact::first_misplaced;
 use crate::geometry::pose::Poses;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
 use crate::model::signal::CHANNEL_LEN;
 use crate::model::{Control, Formulation, Model, ModelHead};
-use crate::simulation::right_hand_side::{Motion, motion, split_state};
+use crate::simulation::right_hand_side::{RightHandSide, split_state};
 use crate::simulation::time_error::TimeError;
 
 /// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
@@ -61,19 +61,26 @@ impl SimRequirement {
         let state = State::<R>::len(&StateDims::of(head, coordinates))?;
         // The matrix is the largest buffer: its size decides whether the sum can be addressed.
         dims.ld.checked_mul(dims.unknowns.checked_add(dims.columns)?)?.checked_mul(4)?;
-        Some(SimRequirement { reals: state.checked_add(Work::<R>::len(&dims)?)? })
+        Some(SimRequirement { reals: state.checked_add(Evaluation::<R>::len(&dims)?)? })
     }
 }
 
 /// Everything of a simulation that has a fixed size.
 #[derive(Clone, Copy, Debug)]
 pub struct SimHead<R> {
+    /// How far it is: what it remembers.
+    pub(crate) progress: Progress<R>,
+    /// What its scratch holds.
+    pub(crate) kept: Kept<R>,
+}
+
+/// How far a simulation is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Progress<R> {
     pub(crate) method: Method<R>,
     /// Time of the state shown.
     pub(crate) time: R,
-    /// Time of the last full step of a fixed-step method, and how many steps led there from `base`.
-    pub(crate) base: R,
-    pub(crate) step_count: u64,
+    pub(crate) clock: Clock<R>,
     pub(crate) adams: Adams<R>,
     pub(crate) rk4: Rk4<R>,
     pub(crate) abm4: Abm4<R>,
@@ -90,10 +97,32 @@ pub struct SimHead<R> {
     pub(crate) coarsest_time: R,
     /// What `worst` belongs to.
     pub(crate) watch: Watch,
-    /// The buffers hold an evaluation of the state shown.
-    pub(crate) fresh: bool,
-    /// A variable-step integrator holds the state shown or a later one.
-    pub(crate) started: bool,
+}
+
+/// How the time shown came about.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) enum Clock<R> {
+    /// By so many full steps of a fixed-step method from `base`.
+    Counted { base: R, steps: u64 },
+    /// It was set: a variable-step method has still to begin there.
+    Set,
+    /// A variable-step method holds the state shown or a later one.
+    Running,
+}
+
+impl<R: Real> Progress<R> {
+    /// The next step starts anew from the time shown.
+    pub(crate) fn set_clock(&mut self) {
+        self.clock = match self.method {
+            Method::Adams { .. } => Clock::Set,
+            _ => Clock::Counted { base: self.time, steps: 0 },
+        };
+    }
+
+    /// Whether a variable-step method has begun.
+    pub(crate) fn runs(&self) -> bool {
+        self.clock == Clock::Running
+    }
 }
 
 /// What the largest indicators of a simulation belong to.
@@ -107,10 +136,12 @@ pub(crate) enum Watch {
     Present,
 }
 
-impl<R> SimHead<R> {
-    /// To be called when what the simulation remembers was put back (see [`Sim::remembered`]): the scratch no longer belongs to it.
-    pub fn forget_evaluation(&mut self) {
-        self.fresh = false;
+impl<R: Real> SimHead<R> {
+    /// Makes what a simulation remembers that of another one of its model, or of itself at an earlier time; the reals of
+    /// [`Sim::remembered`] have to be copied with it. The scratch stays its own.
+    pub fn put_back(&mut self, other: &SimHead<R>) {
+        self.progress = other.progress;
+        self.kept.shown = false;
     }
 }
 
@@ -144,24 +175,32 @@ impl StateDims {
 buffers! {
     /// What a simulation remembers.
     pub(crate) struct State(d: StateDims) {
-        y: d.state,
-        saved: d.state,
-        rate: d.state,
-        positions: 3 * d.links,
-        velocities: 3 * d.links,
-        anchor: 4 * d.boundaries + d.links,
-        joints: 2 * d.coordinates,
-        commands: d.channels * CHANNEL_LEN,
-        integrator: d.work::<R>().unwrap_or(usize::MAX),
+        /// The integrated state (see [`Sim::state`]) at the time shown.
+        y: R = d.state,
+        /// The state before the step under way.
+        saved: R = d.state,
+        /// Scratch of interpolation.
+        rate: R = d.state,
+        /// What is shown · 3n each.
+        positions: R = 3 * d.links,
+        velocities: R = 3 * d.links,
+        /// Placements and headings at the last accepted state: no trial state may lie beyond another body · 4b + n.
+        anchor: R = 4 * d.boundaries + d.links,
+        /// u, u̇ of every coordinate shown, in pairs · 2c.
+        joints: R = 2 * d.coordinates,
+        /// Inputs of the channels · 8 each.
+        commands: R = d.channels * CHANNEL_LEN,
+        /// Memory of the integrator, which it lays out itself.
+        integrator: R = d.work::<R>().unwrap_or(usize::MAX),
     }
 }
 
 /// A simulation in the caller's memory.
-pub struct Sim<'a, R> {
+pub struct Sim<'a, R: Real> {
     pub(crate) model: Model<'a, R>,
-    pub(crate) head: &'a mut SimHead<R>,
+    pub(crate) head: &'a mut Progress<R>,
     pub(crate) state: State<'a, R>,
-    pub(crate) work: Work<'a, R>,
+    pub(crate) evaluation: Evaluation<'a, R>,
 }
 
 impl<'a, R: Real> Sim<'a, R> {
@@ -199,11 +238,10 @@ impl<'a, R: Real> Sim<'a, R> {
             }
             Method::Adams { relative, absolute } => (relative, absolute),
         };
-        Ok(SimHead {
+        let mut progress = Progress {
             method,
             time: R::zero(),
-            base: R::zero(),
-            step_count: 0,
+            clock: Clock::Set,
             adams: Adams::new(relative, absolute, None)?,
             rk4: Rk4::new(),
             abm4: Abm4::new(),
@@ -217,9 +255,9 @@ impl<'a, R: Real> Sim<'a, R> {
             coarsest: R::zero(),
             coarsest_time: R::zero(),
             watch: Watch::Nothing,
-            fresh: false,
-            started: false,
-        })
+        };
+        progress.set_clock();
+        Ok(SimHead { progress, kept: Kept::default() })
     }
 
     /// Starts a simulation in the caller's memory at time 0 and the scene's initial state.
@@ -228,8 +266,9 @@ impl<'a, R: Real> Sim<'a, R> {
     /// `MemoryTooSmall`, `Overlap`, `OutsideTank`, `Singular`.
     pub fn init(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
         reals.fill(R::zero());
+        head.kept = Kept::default();
         let mut sim = Sim::view(model, head, reals)?;
-        sim.work.place_walls(&model);
+        sim.evaluation.place_walls(&model);
         let n = model.head.plan.free_coordinates;
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         let mut rates = [R::zero(); 3];
@@ -246,8 +285,8 @@ impl<'a, R: Real> Sim<'a, R> {
         // Misplacement first: it names what is wrong better than a contact does.
         let (p, dp) = split_state(&model, sim.state.y);
         let dp = if locked { &rates } else { dp };
-        let placed = sim.work.place(&model, R::zero(), p, dp);
-        if let Some((a, b)) = first_misplaced(&model, Poses(sim.work.poses)) {
+        let placed = sim.evaluation.place(&model, R::zero(), p, dp);
+        if let Some((a, b)) = first_misplaced(&model, Poses(sim.evaluation.placement.poses)) {
             return Err(if b == Place::Tank {
                 Error::new(Status::OutsideTank).at(a)
             } else {
@@ -256,7 +295,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         placed.map_err(|e| if e.status == Status::Contact { Error { status: Status::Overlap, ..e } } else { e })?;
         if locked {
-            sim.head.impulse = sim.work.impulse_of_motion(&model, p, &rates)?;
+            sim.head.impulse = sim.evaluation.impulse_of_motion(&model, p, &rates)?;
         }
         sim.show()?;
         Ok(sim)
@@ -273,12 +312,13 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         let dims = StateDims::of(model.head, model.coordinates.len());
         let len = State::<R>::len(&dims).ok_or(Status::SizeOverflow)?;
-        let (state, work) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
-        let work = Work::split(&Dims::of(model.head, model.coordinates.len()), work)?;
-        let state = State::split(&dims, state)?;
+        let (mut state, scratch) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
+        let SimHead { progress: head, kept } = head;
+        let evaluation = Evaluation::split(&Dims::of(model.head, model.coordinates.len()), kept, scratch)?;
+        let state = State::take(&dims, &mut state)?;
         // What is remembered may have been put back (see `remembered`).
-        copy(work.channels, state.commands);
-        Ok(Sim { model, head, state, work })
+        copy(evaluation.coordinates.channels, state.commands);
+        Ok(Sim { model, head, state, evaluation })
     }
 
     /// The model.
@@ -374,7 +414,7 @@ impl<'a, R: Real> Sim<'a, R> {
         self.head.time = t;
         let mut shown = self.show();
         if shown.is_ok()
-            && let Some((a, b)) = first_misplaced(&self.model, Poses(self.work.poses))
+            && let Some((a, b)) = first_misplaced(&self.model, Poses(self.evaluation.placement.poses))
         {
             shown = Err(Error::new(Status::Contact).at(a).with(b));
         }
@@ -408,8 +448,8 @@ impl<'a, R: Real> Sim<'a, R> {
         for (k, x) in from.into_iter().chain(to).enumerate() {
             put(self.state.commands, channel * CHANNEL_LEN + k, x);
         }
-        copy(self.work.channels, self.state.commands);
-        self.head.fresh = false;
+        copy(self.evaluation.coordinates.channels, self.state.commands);
+        self.evaluation.kept.shown = false;
         self.restart();
         Ok(())
     }
@@ -426,9 +466,15 @@ impl<'a, R: Real> Sim<'a, R> {
                 return Err(Error::new(Status::Length).of("length", given as f64));
             }
         }
-        self.head.fresh = false;
         // The user's integrator may jump: no state is asked where it came from.
-        let result = Motion { anchor: None, ..motion!(self) }.rhs(t, y, ydot);
+        let mut system = RightHandSide {
+            model: self.model,
+            evaluation: &mut self.evaluation,
+            impulse: self.head.impulse,
+            anchor: None,
+            counters: &mut self.head.counters,
+        };
+        let result = system.rhs(t, y, ydot);
         if result.is_err() {
             ydot.fill(R::zero());
         }

@@ -2,12 +2,8 @@
 
 use crate::base::scalar::Real;
 use crate::base::status::Result;
-use crate::dynamics::evaluation::{configuration, system};
+use crate::dynamics::evaluation::{Counters, Evaluation};
 use crate::fluid::assembly::assemble;
-use crate::fluid::configuration::Configuration;
-use crate::fluid::near::buffers::Near;
-use crate::fluid::system::BoundarySystem;
-use crate::geometry::pose::Poses;
 use crate::simulation::right_hand_side::split_state;
 use crate::simulation::sim::Sim;
 
@@ -32,28 +28,21 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As [`Sim::rhs`].
     pub fn stage(&mut self, stage: Stage) -> Result<()> {
-        let (model, work) = (self.model, &mut self.work);
+        let (model, evaluation) = (self.model, &mut self.evaluation);
         match stage {
             Stage::Place => {
                 let (p, dp) = split_state(&model, self.state.y);
-                work.place(&model, self.head.time, p, dp)
+                evaluation.place(&model, self.head.time, p, dp)
             }
-            Stage::Grade => work.grade(&model),
+            Stage::Grade => evaluation.grade(&model),
             Stage::Assemble => {
-                let (model, system) = (&model, system!(work));
-                assemble(
-                    &configuration!(work, model),
-                    false,
-                    system.matrix,
-                    system.ld,
-                    system.regular,
-                    work.zx,
-                    work.zy,
-                );
+                let Evaluation { placement, system, pairs, .. } = evaluation;
+                let c = &placement.configuration(&model);
+                assemble(c, false, system.matrix, system.ld, system.regular, pairs.zx, pairs.zy);
                 Ok(())
             }
-            Stage::Solve => work.solve_fluid(&model, &mut crate::Counters::default()),
-            Stage::Force => work.accelerate(&model, self.head.time),
+            Stage::Solve => evaluation.solve_fluid(&model, &mut Counters::default()),
+            Stage::Force => evaluation.accelerate(&model, self.head.time),
         }
     }
 }

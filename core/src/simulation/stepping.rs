@@ -4,12 +4,13 @@
 use crate::base::memory::{copy, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::dynamics::evaluation::Work;
 use crate::dynamics::indicators::Resolution;
 use crate::fluid::contact::{set_anchor, swept_contact};
 use crate::geometry::pose::Poses;
-use crate::model::{Formulation, Model};
-use crate::simulation::right_hand_side::{Motion, motion, split_state};
+use crate::model::Formulation;
+use crate::simulation::right_hand_side::RightHandSide;
+use crate::simulation::right_hand_side::split_state;
+use crate::simulation::sim::Clock;
 use crate::simulation::sim::{Method, Sim, Watch};
 
 impl<R: Real> Sim<'_, R> {
@@ -57,9 +58,9 @@ impl<R: Real> Sim<'_, R> {
         let mut left = self.head.step_limit;
         match self.head.method {
             Method::Adams { .. } => {
-                while !self.head.started || self.head.adams.time() < t_out {
+                while !self.head.runs() || self.head.adams.time() < t_out {
                     if let Err(e) = self.spend(&mut left).and_then(|()| self.adams_step(t_stop)) {
-                        if self.head.started && self.head.adams.time() > self.head.time {
+                        if self.head.runs() && self.head.adams.time() > self.head.time {
                             self.show_adams(self.head.adams.time())?;
                         }
                         return Err(e);
@@ -100,9 +101,7 @@ impl<R: Real> Sim<'_, R> {
     /// Forgets the integrator's past, as after a jump of the drives.
     pub fn restart(&mut self) {
         self.forget_steps();
-        self.head.started = false;
-        self.head.base = self.head.time;
-        self.head.step_count = 0;
+        self.head.set_clock();
     }
 
     /// A call begins: its first step forgets the indicators of the call before.
@@ -115,7 +114,7 @@ impl<R: Real> Sim<'_, R> {
     /// Keeps the indicators of a step's last evaluation if they are the largest of this call.
     fn watch(&mut self, t: R) {
         let model = self.model;
-        let here = self.work.resolution(&model);
+        let here = self.evaluation.resolution(&model);
         if self.head.watch != Watch::Present {
             (self.head.worst, self.head.worst_time) = (Resolution::default(), t);
             self.head.coarsest = R::zero();
@@ -132,18 +131,27 @@ impl<R: Real> Sim<'_, R> {
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
         let t = self.head.time;
-        self.head.fresh = false;
         if !regular {
             self.forget_steps();
         }
-        let mut motion = motion!(self);
+        let mut system = RightHandSide {
+            model: self.model,
+            evaluation: &mut self.evaluation,
+            impulse: self.head.impulse,
+            anchor: Some(self.state.anchor),
+            counters: &mut self.head.counters,
+        };
         let (y, memory) = (&mut *self.state.y, &mut *self.state.integrator);
         let stepped = match self.head.method {
-            Method::Abm4 { .. } if regular => self.head.abm4.step(&mut motion, t, h, y, memory),
-            Method::Gauss6 { .. } if cfg!(feature = "implicit") => self.head.gauss6.step(&mut motion, t, h, y, memory),
-            _ => self.head.rk4.step(&mut motion, t, h, y, memory),
+            Method::Abm4 { .. } if regular => self.head.abm4.step(&mut system, t, h, y, memory),
+            Method::Gauss6 { .. } if cfg!(feature = "implicit") => self.head.gauss6.step(&mut system, t, h, y, memory),
+            _ => self.head.rk4.step(&mut system, t, h, y, memory),
         };
-        let next = if regular { self.head.base + R::count(self.head.step_count as usize + 1) * h } else { t + h };
+        let next = match self.head.clock {
+            // Counted, not summed: the rounding of h does not pile up.
+            Clock::Counted { base, steps } if regular => base + R::count(steps as usize + 1) * h,
+            _ => t + h,
+        };
         let arrived = stepped.and_then(|()| {
             self.head.time = next;
             self.show_checked()
@@ -159,11 +167,12 @@ impl<R: Real> Sim<'_, R> {
         self.watch(next);
         self.head.counters.steps += 1;
         self.note_error(regular, next, h);
-        if regular {
-            self.head.step_count += 1;
-        } else {
-            self.forget_steps();
-            (self.head.base, self.head.step_count) = (self.head.time, 0);
+        match &mut self.head.clock {
+            Clock::Counted { steps, .. } if regular => *steps += 1,
+            _ => {
+                self.forget_steps();
+                self.head.set_clock();
+            }
         }
         Ok(())
     }
@@ -177,25 +186,31 @@ impl<R: Real> Sim<'_, R> {
 
     /// One accepted step of the variable-step method.
     fn adams_step(&mut self, t_stop: R) -> Result<()> {
-        self.head.fresh = false;
         let mut adams = self.head.adams;
-        if !self.head.started {
+        if !self.head.runs() {
             adams.start(self.head.time, self.state.y, self.state.integrator)?;
-            self.head.started = true;
+            self.head.clock = Clock::Running;
             // Trial states are measured from the placements of the state shown; the buffers may hold others.
             let (p, _) = split_state(&self.model, self.state.y);
-            place_only(&self.model, &mut self.work, self.head.time, p);
-            set_anchor(self.state.anchor, self.work.poses, self.work.q);
+            self.evaluation.place_only(&self.model, self.head.time, p, &[]);
+            set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         }
-        let outcome = adams.step(&mut motion!(self), t_stop, self.state.integrator);
+        let mut system = RightHandSide {
+            model: self.model,
+            evaluation: &mut self.evaluation,
+            impulse: self.head.impulse,
+            anchor: Some(self.state.anchor),
+            counters: &mut self.head.counters,
+        };
+        let outcome = adams.step(&mut system, t_stop, self.state.integrator);
         self.head.adams = adams;
         outcome?;
         self.watch(adams.time());
         self.note_error(true, adams.time(), adams.last_step());
         let y = self.head.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
-        place_only(&self.model, &mut self.work, self.head.adams.time(), p);
-        set_anchor(self.state.anchor, self.work.poses, self.work.q);
+        self.evaluation.place_only(&self.model, self.head.adams.time(), p, &[]);
+        set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         Ok(())
     }
 
@@ -220,8 +235,13 @@ impl<R: Real> Sim<'_, R> {
         let zero = [R::zero(); 3];
         // A lone swimmer's rates come later, from its impulse.
         let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
-        self.work.place(&self.model, self.head.time, p, dp)?;
-        if let Some((a, b)) = swept_contact(&self.model, self.state.anchor, Poses(self.work.poses), self.work.q) {
+        self.evaluation.place(&self.model, self.head.time, p, dp)?;
+        if let Some((a, b)) = swept_contact(
+            &self.model,
+            self.state.anchor,
+            Poses(self.evaluation.placement.poses),
+            self.evaluation.placement.q,
+        ) {
             return Err(Error::new(Status::Contact).at(a).with(b));
         }
         if self.model.head.plan.formulation == Formulation::LockedMomentum {
@@ -233,14 +253,15 @@ impl<R: Real> Sim<'_, R> {
 
     /// Positions, velocities and joints of the state.
     pub(crate) fn show(&mut self) -> Result<()> {
-        self.head.fresh = false;
+        // The arrays belong to another state.
+        self.evaluation.kept.shown = false;
         let model = self.model;
         if model.head.plan.formulation == Formulation::LockedMomentum {
             // The rates follow from the impulse: one factorization.
             self.refresh()?;
         } else {
             let (p, dp) = split_state(&model, self.state.y);
-            self.work.place(&model, self.head.time, p, dp)?;
+            self.evaluation.place(&model, self.head.time, p, dp)?;
         }
         self.show_placed();
         Ok(())
@@ -248,21 +269,21 @@ impl<R: Real> Sim<'_, R> {
 
     /// The same, of what was placed last.
     fn show_placed(&mut self) {
-        self.head.fresh = false;
-        copy(self.state.positions, self.work.q);
-        copy(self.state.velocities, self.work.qd);
-        for (k, (u, du)) in self.work.s.iter().zip(self.work.ds.iter()).enumerate() {
+        copy(self.state.positions, self.evaluation.placement.q);
+        copy(self.state.velocities, self.evaluation.velocity.qd);
+        for (k, (u, du)) in self.evaluation.coordinates.s.iter().zip(self.evaluation.coordinates.ds.iter()).enumerate()
+        {
             put(self.state.joints, 2 * k, *u);
             put(self.state.joints, 2 * k + 1, *du);
         }
-        if !self.head.started {
-            set_anchor(self.state.anchor, self.work.poses, self.work.q);
+        if !self.head.runs() {
+            set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         }
     }
 
     /// Makes the buffers hold an evaluation of the state shown, accelerations included.
     pub(crate) fn refresh(&mut self) -> Result<()> {
-        if self.head.fresh {
+        if self.evaluation.kept.shown {
             return Ok(());
         }
         let model = self.model;
@@ -271,17 +292,11 @@ impl<R: Real> Sim<'_, R> {
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         let dp = if locked { &zero } else { dp };
         let mut counters = self.head.counters;
-        self.work.evaluate(&model, &self.head.impulse, self.head.time, p, dp, &mut counters)?;
+        self.evaluation.evaluate(&model, &self.head.impulse, self.head.time, p, dp, &mut counters)?;
         if locked && !model.head.tracks_work {
-            self.work.accelerate(&model, self.head.time)?;
+            self.evaluation.accelerate(&model, self.head.time)?;
         }
-        self.head.fresh = true;
+        self.evaluation.kept.shown = true;
         Ok(())
     }
-}
-
-/// Poses of a state without any check.
-fn place_only<R: Real>(model: &Model<'_, R>, work: &mut Work<'_, R>, t: R, p: &[R]) {
-    crate::dynamics::articulation::set_coordinates(model, t, p, &[], work.channels, work.s, work.ds, work.dds);
-    crate::dynamics::articulation::place_links(model, work.s, work.q, work.poses);
 }

@@ -8,7 +8,7 @@
 //! S = (y, −x, −|X|²/2). Everything here is per unit density of the fluid.
 
 use crate::base::complex::{Complex, cln, complex, csqrt, dot, perp};
-use crate::base::memory::{add, at, axpy, inner, part, part_mut};
+use crate::base::memory::{add, at, axpy, buffers, copy, inner, part, part_mut};
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::induced::{
@@ -21,22 +21,24 @@ use crate::geometry::nodes::targets;
 use crate::geometry::pose::{put_three, twist_of};
 use crate::model::boundary::{BoundaryRecord, Core};
 
-/// Vectors of the circulatory flow, each of length N.
-pub(crate) struct Flow<'a, R> {
-    /// Ψ on the nodes.
-    pub stream: &'a mut [R],
-    /// dn.
-    pub normal: &'a mut [R],
-    /// β.
-    pub tangential: &'a mut [R],
-    /// φ.
-    pub potential: &'a mut [R],
-    /// A⁻ᵀ β.
-    pub adjoint: &'a mut [R],
-    /// Scratch.
-    pub spare: &'a mut [R],
-    /// Scratch.
-    pub second: &'a mut [R],
+buffers! {
+    /// The circulatory flow of a configuration, N each, per unit density. Written by [`solve`], for the position placed last.
+    pub(crate) struct Flow(unknowns: usize) {
+        /// Ψ.
+        stream: R = *unknowns,
+        /// dn.
+        normal: R = *unknowns,
+        /// β.
+        tangential: R = *unknowns,
+        /// φ.
+        potential: R = *unknowns,
+        /// A⁻ᵀ β · by [`add_energy_gradient`]; then scratch of [`add_gyroscopic_force`].
+        adjoint: R = *unknowns,
+        /// Scratch of one function.
+        spare: R = *unknowns,
+        /// Scratch of one function.
+        second: R = *unknowns,
+    }
 }
 
 /// L, L', L'' at z (frame of the core's boundary).
@@ -187,101 +189,103 @@ fn add_core_gradient<R: Real>(
     }
 }
 
-/// Adds ∂T_c/∂q (scaled). One transposed solve, one pass over the pairs.
-pub(crate) fn add_energy_gradient<R: Real>(
-    c: &Configuration<'_, R>,
-    system: &BoundarySystem<'_, R>,
-    flow: &mut Flow<'_, R>,
-    s: &mut PairScratch<'_, R>,
-    scale: R,
-    out: &mut [R],
-) {
-    crate::base::memory::copy(flow.adjoint, flow.tangential);
-    system.factors().solve_transposed(flow.adjoint);
-    let adjoint = &*flow.adjoint;
-    each_induced(c, flow.potential, flow.stream, s, |pair| {
-        add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -R::HALF * scale, out);
-    });
-    multiply_transposed(system.regular, adjoint, flow.spare);
-    let (spare, flow) = (&*flow.spare, &*flow);
-    add_core_gradient(
-        c,
-        scale,
-        |m, k, _| {
-            let i = m.first + k;
-            let c = (at(flow.normal, i) - at(spare, i)) * R::HALF;
-            (c, complex(at(flow.stream, i), -at(flow.potential, i)) * R::HALF)
-        },
-        out,
-    );
+/// What the forces of circulation are formed from: a configuration, its factors, and the circulatory flow there.
+pub(crate) struct Circulation<'s, 'a, R: Real> {
+    pub c: &'s Configuration<'s, R>,
+    pub system: &'s BoundarySystem<'a, R>,
+    pub flow: &'s mut Flow<'a, R>,
+    pub pairs: &'s mut PairScratch<'a, R>,
 }
 
-/// Adds −G q̇ (scaled): (G q̇)_a = γ (−v_y, v_x) + ∂_a(q̇·P) − dP_a/dt. `adjoint` is λ of the motion (Aᵀλ = B v), `v` the
-/// velocities in link frames, `work` scratch of three reals per link. One solve, one pass.
-#[allow(clippy::too_many_arguments)]
-pub(crate) fn add_gyroscopic_force<R: Real>(
-    c: &Configuration<'_, R>,
-    system: &BoundarySystem<'_, R>,
-    flow: &mut Flow<'_, R>,
-    s: &mut PairScratch<'_, R>,
-    qd: &[R],
-    v: &[R],
-    adjoint: &[R],
-    work: &mut [R],
-    scale: R,
-    out: &mut [R],
-) {
-    impulse(c, flow, work);
-    for (_, b, _) in c.each_boundary() {
-        let Some(link) = b.link else { continue };
-        let (u, p) = (twist_of(qd, link), twist_of(work, link));
-        // γ J v, the turning of P, and −J P.
-        let linear = perp(u.linear) * b.circulation - perp(p.linear) * u.angular;
-        let angular = u.linear.im * p.linear.re - u.linear.re * p.linear.im;
-        let sum = [linear.re, linear.im, angular];
-        for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip(sum) {
-            *o -= scale * x;
-        }
+/// A motion of the links as these forces need it: three reals per link in world and in link directions, and its adjoint λ, Aᵀ λ = B v.
+#[derive(Clone, Copy)]
+pub(crate) struct Moving<'s, R> {
+    pub qd: &'s [R],
+    pub in_links: &'s [R],
+    pub adjoint: &'s [R],
+}
+
+impl<R: Real> Circulation<'_, '_, R> {
+    /// Adds ∂T_c/∂q (scaled). One transposed solve, one pass over the pairs.
+    pub(crate) fn add_energy_gradient(&mut self, scale: R, out: &mut [R]) {
+        let Circulation { c, system, flow, pairs } = self;
+        copy(flow.adjoint, flow.tangential);
+        system.factors().solve_transposed(flow.adjoint);
+        let adjoint = &*flow.adjoint;
+        each_induced(c, flow.potential, flow.stream, pairs, |pair| {
+            add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -R::HALF * scale, out);
+        });
+        multiply_transposed(system.regular, adjoint, flow.spare);
+        let (spare, flow) = (&*flow.spare, &**flow);
+        add_core_gradient(
+            c,
+            scale,
+            |m, k, _| {
+                let i = m.first + k;
+                let c = (at(flow.normal, i) - at(spare, i)) * R::HALF;
+                (c, complex(at(flow.stream, i), -at(flow.potential, i)) * R::HALF)
+            },
+            out,
+        );
     }
-    // ∂_a(q̇·P): Im λᵀ dG w with w = φ + iΨ, and in the same pass the rate Im(ż D w) of φ's equation.
-    let rate = &mut *flow.spare;
-    rate.fill(R::zero());
-    each_induced(c, flow.potential, flow.stream, s, |pair: Induced<'_, R>| {
-        add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -scale, out);
-        let rates = relative_rates(&pair, c, qd);
-        for ((a, zd), (hx, hy)) in
-            part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(pair.hx.iter().zip(pair.hy))
-        {
-            *a += zd.re * *hy + zd.im * *hx;
+
+    /// Adds −G q̇ (scaled): (G q̇)_a = γ (−v_y, v_x) + ∂_a(q̇·P) − dP_a/dt. `impulse` is scratch of three reals per link. Writes over
+    /// A⁻ᵀ β. One solve, one pass.
+    pub(crate) fn add_gyroscopic_force(&mut self, motion: Moving<'_, R>, impulse: &mut [R], scale: R, out: &mut [R]) {
+        let Circulation { c, system, flow, pairs } = self;
+        let Moving { qd, in_links, adjoint } = motion;
+        self::impulse(c, flow, impulse);
+        for (_, b, _) in c.each_boundary() {
+            let Some(link) = b.link else { continue };
+            let (u, p) = (twist_of(qd, link), twist_of(impulse, link));
+            // γ J v, the turning of P, and −J P.
+            let linear = perp(u.linear) * b.circulation - perp(p.linear) * u.angular;
+            let angular = u.linear.im * p.linear.re - u.linear.re * p.linear.im;
+            let sum = [linear.re, linear.im, angular];
+            for (o, x) in part_mut(out, 3 * link, 3).iter_mut().zip(sum) {
+                *o -= scale * x;
+            }
         }
-    });
-    multiply_transposed(system.regular, adjoint, flow.second);
-    let second = &*flow.second;
-    add_core_gradient(
-        c,
-        -scale,
-        |m, k, x| {
-            let e = match m.link {
-                Some(link) => {
-                    let v = twist_of(v, link);
-                    -(v.linear.re * x.im - v.linear.im * x.re - v.angular * dot(x, x) * R::HALF)
-                }
-                None => R::zero(),
-            };
-            (at(second, m.first + k), complex(e, R::zero()))
-        },
-        out,
-    );
-    // dP/dt beyond its turning: φ̇ and the rates of the cores' data.
-    let (stream_rate, normal_rate) = (&mut *flow.second, &mut *flow.adjoint);
-    data_rates(c, qd, stream_rate, normal_rate);
-    for (column, x) in system.regular.chunks_exact(system.unknowns.max(1)).zip(&*stream_rate) {
-        axpy(rate, *x, column);
+        // ∂_a(q̇·P): Im λᵀ dG w with w = φ + iΨ, and in the same pass the rate Im(ż D w) of φ's equation.
+        let rate = &mut *flow.spare;
+        rate.fill(R::zero());
+        each_induced(c, flow.potential, flow.stream, pairs, |pair: Induced<'_, R>| {
+            add_pose_gradient(&pair, c, part(adjoint, pair.first, pair.len), -scale, out);
+            let rates = relative_rates(&pair, c, qd);
+            for ((a, zd), (hx, hy)) in
+                part_mut(rate, pair.first, pair.len).iter_mut().zip(rates).zip(pair.hx.iter().zip(pair.hy))
+            {
+                *a += zd.re * *hy + zd.im * *hx;
+            }
+        });
+        multiply_transposed(system.regular, adjoint, flow.second);
+        let second = &*flow.second;
+        add_core_gradient(
+            c,
+            -scale,
+            |m, k, x| {
+                let e = match m.link {
+                    Some(link) => {
+                        let v = twist_of(in_links, link);
+                        -(v.linear.re * x.im - v.linear.im * x.re - v.angular * dot(x, x) * R::HALF)
+                    }
+                    None => R::zero(),
+                };
+                (at(second, m.first + k), complex(e, R::zero()))
+            },
+            out,
+        );
+        // dP/dt beyond its turning: φ̇ and the rates of the cores' data.
+        let (stream_rate, normal_rate) = (&mut *flow.second, &mut *flow.adjoint);
+        data_rates(c, qd, stream_rate, normal_rate);
+        for (column, x) in system.regular.chunks_exact(system.unknowns.max(1)).zip(&*stream_rate) {
+            axpy(rate, *x, column);
+        }
+        system.factors().solve(rate);
+        impulse_of(c, rate, normal_rate, impulse);
+        to_world(c, scale, impulse);
+        axpy(out, R::one(), impulse);
     }
-    system.factors().solve(rate);
-    impulse_of(c, rate, normal_rate, work);
-    to_world(c, scale, work);
-    axpy(out, R::one(), work);
 }
 
 /// Ψ̇ = Σ q Re(L' ż) and dṅ = Σ q Re(ν L'' ż + i (ω_m − ω_i) ν L').

@@ -5,10 +5,11 @@
 //! c = √(d f/4)/D to both sides of a point between the curves. A ladder resolves the distance of the farther one.
 
 use crate::base::complex::{Complex, cabs};
-use crate::base::memory::{at, part, part_mut, put};
+use crate::base::index::Index;
+use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::fluid::gap::{Placed, apart, closest_points, foot};
-use crate::fluid::near::buffers::{LADDER_LIST, MOST_LADDERS};
+use crate::fluid::near::buffers::LadderLists;
 use crate::fluid::near::preimage::wrapped;
 use crate::geometry::curve::Curve;
 use crate::geometry::grading::Ladder;
@@ -57,16 +58,16 @@ fn site<R: Real>(p: &Placed<'_, R>, store: &[R], t: R) -> Site<R> {
 }
 
 /// Appends a ladder to the list of a boundary, finest first; a full list drops its coarsest.
-fn push<R: Real>(lists: &mut [R], boundary: usize, mut ladder: Ladder<R>) {
-    let list = part_mut(lists, boundary * LADDER_LIST, LADDER_LIST);
+fn push<R: Real>(lists: &mut LadderLists<'_, R>, boundary: usize, mut ladder: Ladder<R>) {
+    let Some((count, slots)) = lists.of(boundary) else { return };
     if ladder.beta.is_nan() || ladder.beta >= ladder.top {
         return;
     }
-    let count = at(list, 0).to_f64() as usize;
-    for i in 0..(count + 1).min(MOST_LADDERS) {
-        let slot = part_mut(list, 2 + 3 * i, 3);
-        if i >= count {
-            crate::base::memory::copy(slot, &[ladder.t, ladder.beta, ladder.top]);
+    let listed = count.get();
+    for (i, slot) in slots.iter_mut().enumerate().take(listed + 1) {
+        if i >= listed {
+            *slot = [ladder.t, ladder.beta, ladder.top];
+            *count = R::Index::of(listed + 1);
         } else if let [t, beta, top] = slot
             && ladder.beta < *beta
         {
@@ -75,19 +76,11 @@ fn push<R: Real>(lists: &mut [R], boundary: usize, mut ladder: Ladder<R>) {
             (*t, *beta, *top) = (mine.t, mine.beta, mine.top);
         }
     }
-    put(list, 0, R::count((count + 1).min(MOST_LADDERS)));
-}
-
-/// Ladders in the list of a boundary.
-pub(crate) fn listed<R: Real>(lists: &[R], boundary: usize) -> impl Iterator<Item = Ladder<R>> + '_ {
-    let list = part(lists, boundary * LADDER_LIST, LADDER_LIST);
-    let count = crate::fluid::near::buffers::ladder_count(list);
-    part(list, 2, 3 * count).as_chunks::<3>().0.iter().map(|&[t, beta, top]| Ladder { t, beta, top })
 }
 
 /// Fills the lists of all boundaries for all pairs of which one moves.
-pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &mut [R]) {
-    clear(lists);
+pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &mut LadderLists<'_, R>) {
+    lists.clear();
     let placed = |i: usize| model.boundary(i).map(|(record, nodes)| Placed { record, nodes, pose: poses.get(i) });
     for i in 0..model.boundaries.len() {
         for j in i + 1..model.boundaries.len() {
@@ -98,20 +91,23 @@ pub(crate) fn place<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, lists: &
             }
         }
     }
-    lists.chunks_exact_mut(LADDER_LIST).for_each(thin);
+    for i in 0..model.boundaries.len() {
+        if let Some((count, slots)) = lists.of(i) {
+            thin(slots.get_mut(..count.get()).unwrap_or(&mut []));
+        }
+    }
 }
 
 /// Fades ladders of tips and their feet where a closest point already asks for as much: mostly it lies at the tip itself.
-fn thin<R: Real>(list: &mut [R]) {
-    let count = crate::fluid::near::buffers::ladder_count(list);
+fn thin<R: Real>(ladders: &mut [[R; 3]]) {
     let at_closest_point = |top: R| top == R::lit(TOP);
-    for i in 0..count {
-        let &[t, beta, top] = part(list, 2 + 3 * i, 3) else { continue };
+    for i in 0..ladders.len() {
+        let Some(&[t, beta, top]) = ladders.get(i) else { continue };
         if at_closest_point(top) {
             continue;
         }
         let mut cover = R::zero();
-        for &[t2, beta2, top2] in part(list, 2, 3 * count).as_chunks::<3>().0 {
+        for &[t2, beta2, top2] in &*ladders {
             if at_closest_point(top2) {
                 // At this distance the other one resolves that much, as far as it has not faded itself.
                 let finest = beta2.max(wrapped(t - t2).abs() * R::lit(3.0));
@@ -119,15 +115,9 @@ fn thin<R: Real>(list: &mut [R]) {
                 cover = cover.max((R::lit(1.5) - finest / beta) / R::HALF * strength);
             }
         }
-        put(list, 2 + 3 * i + 2, beta * (top / beta).powf(R::one() - cover.min(R::one())));
-    }
-}
-
-/// Empties all lists.
-pub(crate) fn clear<R: Real>(lists: &mut [R]) {
-    for list in lists.chunks_exact_mut(LADDER_LIST) {
-        put(list, 0, R::zero());
-        put(list, 1, -R::one());
+        if let Some([_, _, faded]) = ladders.get_mut(i) {
+            *faded = beta * (top / beta).powf(R::one() - cover.min(R::one()));
+        }
     }
 }
 
@@ -136,7 +126,7 @@ pub(crate) fn place_pair<R: Real>(
     store: &[R],
     (i, a): (usize, &Placed<'_, R>),
     (j, b): (usize, &Placed<'_, R>),
-    lists: &mut [R],
+    lists: &mut LadderLists<'_, R>,
 ) {
     if apart(a, b) > R::lit(FAR) * a.record.reach.max(b.record.reach) {
         return;

@@ -19,7 +19,7 @@ use crate::base::status::Result;
 use crate::geometry::pose::Poses;
 use crate::model::Model;
 
-use buffers::NearMut;
+use buffers::{LadderLists, NearMut};
 
 once! {
     /// Places ladders and nodes for this configuration and finds every preimage that needs a pole term.
@@ -30,7 +30,7 @@ once! {
         if !features::NEAR || near.ladders.is_empty() {
             return Ok(());
         }
-        ladders::place(model, poses, near.ladders);
+        ladders::place(model, poses, &mut LadderLists { lists: near.lists, ladders: near.ladders });
         regrade::regrade(model, near)?;
         preimage::find_all(model, poses, near);
         Ok(())

@@ -7,12 +7,13 @@
 
 use crate::base::complex::{Complex, cabs, cln, complex, dot};
 use crate::base::elementary::{exp_m1, quotient, sin_cos};
+use crate::base::index::Index;
 use crate::base::memory::{at, copy, part_mut};
 use crate::base::once::once;
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::near::buffers::Preimage;
-use crate::fluid::near::buffers::{NearMut, PREIMAGES};
+use crate::fluid::near::buffers::{Near, NearMut, PREIMAGE_REALS, PREIMAGES};
 use crate::geometry::curve::{Curve, OutlineView};
 use crate::geometry::grading::Offset;
 use crate::geometry::nodes::Nodes;
@@ -159,11 +160,12 @@ pub(crate) fn wrapped<R: Real>(t: R) -> R {
 /// Finds the preimages of all nodes on all boundaries of which one moves, on walls whose blocks are formed anew, and on the
 /// opposite flank of every boundary whose nodes belong to this configuration.
 pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near: &mut NearMut<'_, R>) {
-    let NearMut { nodes, rungs, ladders, preimages, unknowns } = near;
+    let NearMut { nodes, rungs, lists, preimage_nodes, preimages, unknowns, .. } = near;
     if preimages.is_empty() {
         return;
     }
-    let view = crate::fluid::near::buffers::Near { nodes, rungs, ladders, preimages: &[], unknowns: *unknowns };
+    let unknowns = *unknowns;
+    let view = Near { nodes, rungs, lists, preimage_nodes: &[], preimages: &[], unknowns };
     let c = Configuration { model: *model, poses, near: view };
     let walls_anew = c.walls_regraded();
     for (j, record, nodes) in c.each_boundary() {
@@ -172,14 +174,15 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
         // Beyond this multiple of the source's reach every pole term is lost.
         let most = (reach::<R>() / strip).exp();
         for (i, target, points) in c.each_boundary() {
-            let rows = part_mut(preimages, (j * *unknowns + target.first) * PREIMAGES, target.nodes * PREIMAGES);
+            let (first, count) = ((j * unknowns + target.first) * PREIMAGES, target.nodes * PREIMAGES);
+            let found = part_mut(preimage_nodes, first, count);
+            found.fill(R::Index::of(0));
             let both_walls = record.link.is_none() && target.link.is_none();
             let wanted =
                 if i == j { c.regraded(i) || (record.link.is_none() && walls_anew) } else { !both_walls || walls_anew };
             let apart = cabs(c.pose(i).origin - c.pose(j).origin) - target.reach;
             let far = i != j && record.sign < R::zero() && target.sign < R::zero() && apart > most * record.reach;
             if !wanted || far {
-                rows.fill(R::zero());
                 continue;
             }
             let (turn, shift) = if i == j {
@@ -187,13 +190,16 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
             } else {
                 relative(c.pose(i), c.pose(j))
             };
-            rows.fill(R::zero());
+            let reals = part_mut(preimages, first * PREIMAGE_REALS, count * PREIMAGE_REALS);
             let targets = Targets { nodes: points, turn, shift, own: i == j };
             each_preimage(&source, &targets, &mut |row, p| {
-                let slots = part_mut(rows, row * PREIMAGES, PREIMAGES).chunks_exact_mut(Preimage::<R>::REALS);
-                if let Some(slot) = slots.into_iter().find(|slot| at(slot, 0) == R::zero()) {
-                    copy(slot, &p.reals());
+                let free = (row * PREIMAGES..(row + 1) * PREIMAGES)
+                    .find(|slot| found.get(*slot).is_some_and(|node| node.get() == 0));
+                let Some(slot) = free else { return };
+                if let Some(node) = found.get_mut(slot) {
+                    *node = R::Index::of(p.node + 1);
                 }
+                copy(part_mut(reals, slot * PREIMAGE_REALS, PREIMAGE_REALS), &p.reals());
             });
         }
     }

@@ -1,10 +1,10 @@
 //! Nodes of the present configuration on the boundaries that carry ladders.
 
+use crate::base::index::Index;
 use crate::base::memory::{part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::Result;
-use crate::fluid::near::buffers::{COLUMNS, LADDER_LIST, NearMut};
-use crate::fluid::near::ladders::listed;
+use crate::fluid::near::buffers::{COLUMNS, LISTS, NearMut, listed};
 use crate::geometry::curve::OutlineView;
 use crate::geometry::grading::{Grading, Ladder, write_fitting};
 use crate::geometry::nodes::write_nodes;
@@ -17,7 +17,7 @@ use crate::model::boundary::BoundaryRecord;
 /// `Internal` if a node could not be placed to rounding.
 pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) -> Result<()> {
     for (i, b) in model.boundaries.iter().enumerate() {
-        let Some(finest) = listed(near.ladders, i).next() else { continue };
+        let Some(finest) = listed(near.lists, near.ladders, i).next() else { continue };
         // Repulsion is steeper than what the flow needs resolved.
         let flow = need(b, b.view(model.store).grading.plain(), finest.beta);
         let need = if model.head.repulsion.is_some() { R::one() } else { flow };
@@ -27,7 +27,7 @@ pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) 
         let rungs = part_mut(near.rungs, b.slots.rungs_at, b.slots.rungs_len);
         // With no need left the top comes down to the scale itself, and the rungs fade.
         let faded = |l: Ladder<R>| Ladder { top: l.beta * (l.top / l.beta).powf(need), ..l };
-        let ladders = b.ladders(model.store).chain(listed(near.ladders, i).map(faded));
+        let ladders = b.ladders(model.store).chain(listed(near.lists, near.ladders, i).map(faded));
         let (count, _) = write_fitting(ladders, rungs)?;
         let view = OutlineView { grading: Grading::read(rungs, count), ..b.view(model.store) };
         let nodes = part_mut(near.nodes, COLUMNS * b.first, COLUMNS * b.nodes);
@@ -35,7 +35,9 @@ pub(crate) fn regrade<R: Real>(model: &Model<'_, R>, near: &mut NearMut<'_, R>) 
         if b.link.is_some() {
             fill_potential(b, model.store, nodes);
         }
-        put(near.ladders, i * LADDER_LIST + 1, R::count(count));
+        if let Some(rungs) = near.lists.get_mut(i * LISTS + 1) {
+            *rungs = R::Index::of(count + 1);
+        }
     }
     Ok(())
 }

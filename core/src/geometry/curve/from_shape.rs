@@ -223,7 +223,7 @@ impl<R: Real> Shape<'_, R> {
                 let n = points.len();
                 let clockwise = area(turned(points, false), n) < R::zero();
                 let p = turned(points, clockwise);
-                let mut memory = through_points::Memory::split(&n, scratch)?;
+                let mut memory = through_points::Memory::take(&n, &mut { scratch })?;
                 let modes = through_points::write(&p, n, &mut memory, store)?;
                 let kind = Kind::Fourier { centre: R::one(), stride: R::one(), down: modes.down, count: modes.count };
                 let samples = through_points::samples(n);

@@ -24,17 +24,17 @@ buffers! {
     /// Memory needed only while a curve is being built.
     pub(super) struct Memory(n: usize) {
         /// Knots τ₋₆ … τₙ₊₅.
-        knots: n.saturating_add(2 * EXTRA),
+        knots: R = n.saturating_add(2 * EXTRA),
         /// Collocation matrix by rows, each followed by the two right-hand sides.
-        rows: n.saturating_mul(n.saturating_add(2)),
+        rows: R = n.saturating_mul(n.saturating_add(2)),
         /// Control points of the spline.
-        control: n.saturating_mul(2),
+        control: R = n.saturating_mul(2),
         /// Roots of unity.
-        roots: n.saturating_mul(2 * SAMPLES),
+        roots: R = n.saturating_mul(2 * SAMPLES),
         /// Samples of the spline, later of the curve.
-        samples: n.saturating_mul(2 * SAMPLES),
+        samples: R = n.saturating_mul(2 * SAMPLES),
         /// Bounding boxes for the test of self-intersection.
-        boxes: boxes_len(n.saturating_mul(SAMPLES)),
+        boxes: R = boxes_len(n.saturating_mul(SAMPLES)),
     }
 }
 
@@ -284,7 +284,7 @@ mod tests {
                 complex(5.0 + (1.0 + 0.2 * (2.0 * t).cos()) * t.cos(), 0.6 * t.sin())
             };
             let mut slab = memory_of(n);
-            let mut memory = Memory::split(&n, &mut slab).unwrap();
+            let mut memory = Memory::take(&n, &mut &mut slab[..]).unwrap();
             let mut store = vec![f64::NAN; coefficients_len(n)];
             let modes = write(p, n, &mut memory, &mut store).unwrap();
             let coefficients = part(&store, 0, 2 * modes.count);

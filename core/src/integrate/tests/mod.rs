@@ -5,6 +5,8 @@ use std::vec;
 use std::vec::Vec;
 
 use super::*;
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 mod accuracy;
 mod estimates;

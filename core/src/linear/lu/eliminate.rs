@@ -3,6 +3,7 @@
 
 use super::rows::{BLOCK, Rows, exchange};
 use super::tile::{begin, halves, store};
+use crate::base::index::Index;
 use crate::base::machine::Lanes;
 use crate::base::memory::{at, part, part_mut};
 use crate::base::scalar::Real;
@@ -15,7 +16,7 @@ pub(super) fn eliminate_block<R: Real, V: Lanes<R>>(
     ld: usize,
     n: usize,
     k: usize,
-    pivots: &mut [R],
+    pivots: &mut [R::Index],
 ) -> Option<(R, R)> {
     let straight = match BLOCK / V::WIDTH {
         1 => eliminate_straight::<R, V, 1>(block, ld, n, k, pivots),
@@ -33,7 +34,7 @@ fn eliminate_straight<R: Real, V: Lanes<R>, const H: usize>(
     ld: usize,
     n: usize,
     k: usize,
-    pivots: &mut [R],
+    pivots: &mut [R::Index],
 ) -> Option<(R, R)> {
     if pivots.len() != BLOCK {
         return None;
@@ -64,7 +65,7 @@ fn eliminate_straight<R: Real, V: Lanes<R>, const H: usize>(
         done += V::WIDTH;
     }
     for (c, (pivot, top)) in pivots.iter_mut().zip(&tops).enumerate() {
-        *pivot = R::count(k + c);
+        *pivot = R::Index::of(k + c);
         crate::base::memory::copy(part_mut(block, c * ld + k, BLOCK), top);
     }
     Some((smallest, largest))
@@ -212,7 +213,7 @@ fn eliminate_exchanging<R: Real, V: Lanes<R>>(
     ld: usize,
     n: usize,
     k: usize,
-    pivots: &mut [R],
+    pivots: &mut [R::Index],
 ) -> Option<(R, R)> {
     let (mut smallest, mut largest) = (R::MAX, R::zero());
     let width = pivots.len();
@@ -235,7 +236,7 @@ fn eliminate_exchanging<R: Real, V: Lanes<R>>(
         }
         (smallest, largest) = (smallest.min(size), largest.max(size));
         let row = k + c + part(column, c, n - k - c).iter().position(|y| y.abs() == size).unwrap_or(0);
-        *pivot = R::count(row);
+        *pivot = R::Index::of(row);
         if row != k + c {
             for column in block.chunks_exact_mut(ld.max(1)).take(width) {
                 exchange(column, k + c, row);

@@ -14,7 +14,8 @@ pub(super) trait Kernel<R: Real>: Copy {
     fn subtract(self, left: &[R], ld: usize, rows: Rows, right: &mut [R]);
     /// Elimination with partial pivoting of at most [`BLOCK`] columns from row `k` on. Returns the smallest and the
     /// largest pivot; `None` when there is none.
-    fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)>;
+    fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R::Index])
+    -> Option<(R, R)>;
     /// A ← A U⁻¹ in the rows `to ..` of a block of at most [`BLOCK`] columns, whose rows `from ..` hold U.
     fn divide(self, block: &mut [R], ld: usize, rows: Rows) {
         divide(block, ld, rows);
@@ -38,7 +39,7 @@ macro_rules! kernel {
             kernel!(@fused fn subtract(left: &'a [R], ld: usize, rows: Rows, right: &'a mut [R]) -> () =
                 tile::subtract::<R, R::$vector, 3>(left, ld, rows, right));
             kernel!(@fused fn eliminate_block(
-                block: &'a mut [R], ld: usize, n: usize, k: usize, pivots: &'a mut [R]
+                block: &'a mut [R], ld: usize, n: usize, k: usize, pivots: &'a mut [R::Index]
             ) -> Option<(R, R)> = eliminate::eliminate_block::<R, R::$vector>(block, ld, n, k, pivots));
             kernel!(@fused fn divide(block: &'a mut [R], ld: usize, rows: Rows) -> () =
                 eliminate::divide::<R, R::$vector>(block, ld, rows));
@@ -54,7 +55,7 @@ macro_rules! kernel {
     (@fused fn $name:ident($($arg:ident: $type:ty),*) -> $out:ty = $run:expr) => {
         #[inline(always)]
         fn $name<'a>(self, $($arg: $type),*) -> $out {
-            struct Arguments<'a, R> { $($arg: $type),* }
+            struct Arguments<'a, R: Real> { $($arg: $type),* }
             impl<'a, R: Real> Task for Arguments<'a, R> {
                 type Output = $out;
                 #[inline(always)]

@@ -3,6 +3,7 @@
 
 use super::kernel::Kernel;
 use super::rows::{Rows, exchange};
+use crate::base::index::Index;
 use crate::base::machine::Portable;
 use crate::base::memory::{at, inner, part, part_mut, put};
 use crate::base::scalar::Real;
@@ -18,7 +19,14 @@ impl<R: Real> Kernel<R> for Portable {
         by_strips(left, ld, rows, Kind::Product, right);
     }
 
-    fn eliminate_block(self, block: &mut [R], ld: usize, n: usize, k: usize, pivots: &mut [R]) -> Option<(R, R)> {
+    fn eliminate_block(
+        self,
+        block: &mut [R],
+        ld: usize,
+        n: usize,
+        k: usize,
+        pivots: &mut [R::Index],
+    ) -> Option<(R, R)> {
         let (mut smallest, mut largest) = (R::MAX, R::zero());
         for (c, pivot) in pivots.iter_mut().enumerate() {
             let (done, rest) = block.split_at_mut_checked(c * ld)?;
@@ -41,7 +49,7 @@ impl<R: Real> Kernel<R> for Portable {
                 return None;
             }
             (smallest, largest) = (smallest.min(size), largest.max(size));
-            *pivot = R::count(row);
+            *pivot = R::Index::of(row);
             if row != k + c {
                 for column in block.chunks_exact_mut(ld.max(1)) {
                     exchange(column, k + c, row);
