@@ -4,8 +4,7 @@ use crate::base::scalar::Real;
 use crate::fluid::near::buffers::{Near, Preimage};
 use crate::geometry::curve::OutlineView;
 use crate::geometry::nodes::Nodes;
-use crate::geometry::pose::Pose;
-use crate::geometry::pose::Poses;
+use crate::geometry::pose::{Pose, Poses};
 use crate::model::Model;
 use crate::model::boundary::BoundaryRecord;
 

@@ -6,8 +6,7 @@ use crate::base::scalar::Real;
 use crate::base::status::Place;
 use crate::fluid::gap::{Placed, apart, closest_nodes, encloses, signed_gap, size, touching};
 use crate::geometry::nodes::targets;
-use crate::geometry::pose::Pose;
-use crate::geometry::pose::Poses;
+use crate::geometry::pose::{Pose, Poses};
 use crate::model::Model;
 use crate::model::boundary::BoundaryRecord;
 
@@ -106,8 +105,9 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
 /// Remembers an anchor: placements of all boundaries, then headings of all links (a placement knows no full turns), from
 /// their coordinates.
 pub(crate) fn set_anchor<R: Real>(anchor: &mut [R], poses: &[R], q: &[R]) {
-    copy(anchor, poses);
-    for (heading, q) in anchor.iter_mut().skip(poses.len()).zip(q.chunks_exact(3)) {
+    let (places, headings) = anchor.split_at_mut_checked(poses.len()).unwrap_or((&mut [], &mut []));
+    copy(places, poses);
+    for (heading, q) in headings.iter_mut().zip(q.chunks_exact(3)) {
         *heading = at(q, 2);
     }
 }

@@ -11,8 +11,7 @@ use crate::base::memory::{part, part_mut};
 use crate::base::once::once;
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
-use crate::fluid::induced::add_pole_velocity;
-use crate::fluid::induced::{PairScratch, Relative, add_pose_sums, pose_sums};
+use crate::fluid::induced::{PairScratch, Relative, add_pole_velocity, add_pose_sums, pose_sums};
 use crate::geometry::nodes::Nodes;
 use crate::model::boundary::BoundaryRecord;
 

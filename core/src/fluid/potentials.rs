@@ -10,8 +10,7 @@ use crate::base::memory::{part, part_mut};
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
 use crate::geometry::nodes::Nodes;
-use crate::geometry::pose::Twist;
-use crate::geometry::pose::{put_three, twist_of};
+use crate::geometry::pose::{Twist, put_three, twist_of};
 
 /// Three reals per link, world to link frame (linear parts turned).
 pub(crate) fn to_link_frames<R: Real>(c: &Configuration<'_, R>, world: &[R], out: &mut [R]) {

@@ -42,7 +42,7 @@ impl<'a, R: Real> Nodes<'a, R> {
             t: column(4),
             ddx: column(5),
             ddy: column(6),
-            chi: column(7),
+            chi: data.get(7 * n..8 * n).unwrap_or(&[]),
             step: R::TAU / R::count(n.max(1)),
         }
     }

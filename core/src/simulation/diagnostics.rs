@@ -7,10 +7,8 @@ use crate::base::status::{Error, Result, Status};
 use crate::dynamics::accelerations::joint_torque;
 use crate::dynamics::evaluation::Evaluation;
 use crate::dynamics::forces::{buoyancy, circulation, repulsion};
-use crate::fluid::contact::Gap;
-use crate::fluid::contact::smallest_gap;
-use crate::geometry::pose::Poses;
-use crate::geometry::pose::{put_three, twist_of};
+use crate::fluid::contact::{Gap, smallest_gap};
+use crate::geometry::pose::{Poses, put_three, twist_of};
 use crate::model::{Control, Formulation};
 use crate::simulation::sim::Sim;
 

@@ -8,10 +8,8 @@ use crate::dynamics::indicators::Resolution;
 use crate::fluid::contact::{set_anchor, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::model::Formulation;
-use crate::simulation::right_hand_side::RightHandSide;
-use crate::simulation::right_hand_side::split_state;
-use crate::simulation::sim::Clock;
-use crate::simulation::sim::{Method, Sim, Watch};
+use crate::simulation::right_hand_side::{RightHandSide, split_state};
+use crate::simulation::sim::{Clock, Method, Sim, Watch};
 
 impl<R: Real> Sim<'_, R> {
     /// One step of the method (for `Adams` one step of its own choice).

@@ -3,8 +3,7 @@
 
 use crate::base::memory::{add, at};
 use crate::base::scalar::Real;
-use crate::geometry::pose::Poses;
-use crate::geometry::pose::twist_of;
+use crate::geometry::pose::{Poses, twist_of};
 use crate::model::Model;
 
 /// Potential energy, J/m.

@@ -16,8 +16,7 @@ use crate::fluid::induced::{
 };
 use crate::fluid::potentials::{flux_moments, to_world};
 use crate::fluid::system::BoundarySystem;
-use crate::geometry::nodes::Nodes;
-use crate::geometry::nodes::targets;
+use crate::geometry::nodes::{Nodes, targets};
 use crate::geometry::pose::{put_three, twist_of};
 use crate::model::boundary::{BoundaryRecord, Core};
 

@@ -216,6 +216,9 @@ fn scale<R: Real>(r: R, turn: R, perimeter: R) -> R {
 
 /// Upper bound of the number of rungs of a polygon's ladders, one more per corner than its sides as given need.
 pub(super) fn rungs<R: Real>(vertex: impl Fn(usize) -> Complex<R>, n: usize, radius: Option<R>) -> Result<usize> {
+    if n == 0 {
+        return Ok(0);
+    }
     let (perimeter, radius) = measure(&vertex, n, radius)?;
     let mut before = vertex(0) - vertex(n.saturating_sub(1));
     Ok((0..n).fold(0usize, |sum, k| {

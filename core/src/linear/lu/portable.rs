@@ -229,12 +229,12 @@ type Four<R> = [R; ROWS];
 
 #[inline(always)]
 fn load<R: Real>(from: &[R], row: usize) -> Option<Four<R>> {
-    part(from, row, ROWS).first_chunk().copied()
+    from.get(row..)?.first_chunk().copied()
 }
 
 #[inline(always)]
 fn store<R: Real>(s: Four<R>, to: &mut [R], row: usize) {
-    if let Some(to) = part_mut(to, row, ROWS).first_chunk_mut() {
+    if let Some(to) = to.get_mut(row..).and_then(|to| to.first_chunk_mut()) {
         *to = s;
     }
 }

@@ -45,7 +45,7 @@ fn row_of_tiles<R: Real, V: Lanes<R>, const M: usize>(a: &[R], ld: usize, rows: 
             // What the next tile changes is on its way while this one is computed.
             for column in others.chunks(ld.max(1)).take(COLUMNS) {
                 for i in 0..=M {
-                    V::prefetch(part(column, rows.to + i * V::WIDTH, 1));
+                    V::prefetch(column.get(rows.to + i * V::WIDTH..).unwrap_or(&[]));
                 }
             }
         }

@@ -29,7 +29,8 @@ fn triangle<R: Real, V: Lanes<R>, const H: usize, const UPPER: bool>(left: &[R],
     let zero = V::splat(R::zero());
     let (mut block, mut scale) = ([[zero; H]; BLOCK], [-R::one(); BLOCK]);
     for (p, (column, scale)) in block.iter_mut().zip(&mut scale).enumerate() {
-        let from = part(left.get(p * ld..).unwrap_or(&[]), k, width);
+        // There may be fewer columns than a block has.
+        let from = left.get(p * ld + k..p * ld + k + width).unwrap_or(&[]);
         // What belongs to the other triangle, and is finite, is taken 0 times.
         let mut mask = [R::zero(); BLOCK];
         for (i, mask) in mask.iter_mut().enumerate() {
@@ -102,7 +103,7 @@ fn scaled<R: Real, V: Lanes<R>, const H: usize>(y: [V; H], scale: [V; H]) -> [V;
 /// Rows `k ..` of at most [`BLOCK`] columns, `width` of each; 0 where there are fewer.
 #[inline(always)]
 fn triangle_of<R: Real>(columns: &[R], ld: usize, k: usize, width: usize) -> [[R; BLOCK]; BLOCK] {
-    let column = |p: usize| lanes(part(columns.get(p * ld..).unwrap_or(&[]), k, width), R::zero());
+    let column = |p: usize| lanes(columns.get(p * ld + k..p * ld + k + width).unwrap_or(&[]), R::zero());
     [column(0), column(1), column(2), column(3), column(4), column(5), column(6), column(7)]
 }
 
@@ -152,10 +153,7 @@ pub(super) fn solve_transposed<R: Real, V: Lanes<R>>(lu: &[R], ld: usize, n: usi
 fn products<R: Real, V: Lanes<R>>(columns: &[R], ld: usize, row: usize, y: &[R]) -> [R; BLOCK] {
     // The first column takes the place of missing ones.
     let first = part(columns, row, y.len());
-    let side = |c: usize| match part(columns, c * ld + row, y.len()) {
-        [] => first,
-        side => side,
-    };
+    let side = |c: usize| columns.get(c * ld + row..c * ld + row + y.len()).unwrap_or(first);
     let [a, b, c, d] = four_products::<R, V>(y, [side(0), side(1), side(2), side(3)]);
     let [e, f, g, h] = four_products::<R, V>(y, [side(4), side(5), side(6), side(7)]);
     [a, b, c, d, e, f, g, h]
