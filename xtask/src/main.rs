@@ -21,7 +21,9 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: cargo xtask <command>
 
 commands:
-  test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
+  test [--no-skips] [--list] [WORD...]
+             everything: format, lints, builds without std and without heap, tests, documentation, scenes; or the steps
+             with one of the words in their names (--list: only the names; --no-skips: a skipped step counts as failed)
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
   bench [--tables]
@@ -51,7 +53,10 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["test"] => test::run(),
+        ["test", words @ ..] => match steps::Wish::of(words) {
+            Some(wish) => test::run(wish),
+            None => usage(),
+        },
         ["bench"] => bench::run(),
         ["bench", "--tables"] => bench::tables(),
         ["bench-guard"] => bench::guard(),
@@ -74,9 +79,11 @@ fn main() -> ExitCode {
             print!("{USAGE}");
             ExitCode::SUCCESS
         }
-        _ => {
-            eprint!("{USAGE}");
-            ExitCode::from(2)
-        }
+        _ => usage(),
     }
+}
+
+fn usage() -> ExitCode {
+    eprint!("{USAGE}");
+    ExitCode::from(2)
 }
