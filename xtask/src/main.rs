@@ -11,6 +11,7 @@ mod extremes;
 mod firmware;
 mod fuzz;
 mod header;
+mod layers;
 mod speed;
 mod steps;
 mod test;
@@ -46,6 +47,9 @@ commands:
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
              target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already;
              SCENE: one of scenes/, without repeating what is measured)
+  layers [--picture] [FOLDER]
+             checks the imports of core against the order of its layers, and that no crate has circles of files; --picture:
+             writes docs/layers.svg (FOLDER: in another checkout)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -72,6 +76,10 @@ fn main() -> ExitCode {
         ["trade", "--tables"] => steps::Steps::only("tables", trade::collected),
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["trade", scene] if !scene.starts_with('-') => trade::one(scene),
+        ["layers"] => layers::run(None),
+        ["layers", "--picture"] => layers::write_picture(None),
+        ["layers", "--picture", folder] => layers::write_picture(Some(folder)),
+        ["layers", folder] if !folder.starts_with('-') => layers::run(Some(folder)),
         ["header"] => header::run(),
         ["extremes", "--tables"] => extremes::pages(),
         ["extremes", runs @ ..] if runs.iter().all(|word| !word.starts_with('-')) => extremes::run(runs),

@@ -18,6 +18,7 @@ pub fn run(wish: Wish) -> ExitCode {
     steps.run("compilers", || require(&[("cc", "gcc"), ("c++", "g++")]).into());
     steps.command("format", &mut cargo(&["fmt", "--all", "--check"]));
     steps.command("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"]));
+    steps.run("layers of core", crate::layers::step);
     steps.command("core without std and heap", &mut cargo(&["build", "--package", "nekton", "--no-default-features"]));
     steps.command(
         "core without std",
