@@ -14,8 +14,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::Error;
 
+use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
-use crate::{Ending, say};
 use measure::Bench;
 use reference::{Reference, Refusal};
 pub use setting::{Setting, Variant, counts, method, method_name, parameter, unit};
@@ -76,7 +76,8 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
             },
         )?;
         bar.finish_and_clear();
-        let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        let title = format!("{name}: error against time, to t = {} s", shown(reference.until));
         let picture = picture::draw(&title, &rows, &reference)
             .map_err(|e| Problem::file(path, format!("the plot could not be drawn: {e}")))?;
         table.write("trade.svg", picture.as_bytes())?;

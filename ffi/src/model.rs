@@ -5,6 +5,8 @@ use crate::convert::check_pointer;
 use crate::diag::{Fault, Outcome, place_of};
 use crate::memory::{begin_model, check_memory, model, model_req};
 use crate::shared::NEKTON_ABI_VERSION;
+#[cfg(feature = "std")]
+use crate::shared::NEKTON_ALIGN;
 use crate::types::*;
 use nekton::{Formulation, Model, Real, Status};
 
@@ -172,7 +174,7 @@ fn allocate(req: &nekton_req) -> Outcome<*mut u8> {
 
 #[cfg(feature = "std")]
 unsafe fn release(mem: *mut u8, bytes: usize) {
-    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, crate::memory::ALIGN) {
+    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, NEKTON_ALIGN) {
         // SAFETY: from `allocate` with the same layout.
         unsafe { std::alloc::dealloc(mem, layout) };
     }

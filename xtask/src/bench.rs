@@ -1,13 +1,11 @@
 //! `cargo xtask bench`: the comparison with LAPACK and with the paper's algorithm, and the guard of speed.
 
 use crate::firmware;
-use crate::speed;
+use crate::speed::{self, TABLE};
 use crate::steps::{Outcome, ask, cargo, execute, output, read, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode, Stdio};
 
-/// Measured ratios.
-pub const TABLE: &str = "docs/bench/ratios.csv";
 /// Error against time of the paper's example.
 pub const PASSING: &str = "docs/bench/passing.csv";
 

@@ -7,6 +7,7 @@ use crate::steps::{Outcome, Steps, ask, read, require, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::OnceLock;
 
 const WARNINGS: [&str; 6] = ["-O2", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
 /// Examples that must not use the heap.
@@ -15,6 +16,16 @@ const WITHOUT_HEAP: [&str; 2] = ["one_body_static", "swimmer_closed_loop"];
 /// Where the steps install.
 fn prefix() -> PathBuf {
     root().join("target/nekton")
+}
+
+/// Installs there, once in a run: whichever of the steps is run first does not meet what an earlier run left behind.
+fn installed() -> Result<(), String> {
+    static DONE: OnceLock<Result<(), String>> = OnceLock::new();
+    let install = || {
+        let _ = std::fs::remove_dir_all(prefix());
+        install(&prefix())
+    };
+    DONE.get_or_init(install).clone()
 }
 
 /// A folder for what a step builds, empty.
@@ -32,14 +43,11 @@ pub fn run() -> ExitCode {
     steps.finish()
 }
 
-/// A step that needs programs, given with their packages.
+/// A step that needs the installed tree, and programs, given with their packages.
 fn step(steps: &mut Steps, name: &str, programs: &[(&str, &str)], action: impl FnOnce() -> Result<(), String>) {
-    steps.run(name, || match require(programs) {
+    steps.run(name, || match require(&[programs, &[CC, BINUTILS]].concat()) {
         Err(why) => Outcome::Skipped(why),
-        Ok(()) => match action() {
-            Ok(()) => Outcome::Passed,
-            Err(why) => Outcome::Failed(why),
-        },
+        Ok(()) => installed().and_then(|()| action()).into(),
     });
 }
 
@@ -50,10 +58,7 @@ const CMAKE: (&str, &str) = ("cmake", "cmake");
 
 /// Adds the steps to a run.
 pub fn add(steps: &mut Steps) {
-    step(steps, "installed package", &[CC, BINUTILS], || {
-        let _ = std::fs::remove_dir_all(prefix());
-        install(&prefix())
-    });
+    step(steps, "installed package", &[CC, BINUTILS], || Ok(()));
     step(steps, "exported symbols", &[BINUTILS], symbols);
     step(steps, "examples in C99 and C++17, static and shared", &[CC, CXX], examples);
     step(steps, "examples by the lines in their headers", &[CC, CXX], compiler_lines);

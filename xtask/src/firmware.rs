@@ -203,7 +203,7 @@ pub struct Counted {
 /// Counts on every board, in every precision that its processor computes itself. Cost: a build and six runs.
 pub fn counts() -> Result<Vec<Counted>, String> {
     require(&PROGRAMS)?;
-    let compiler = compiler(CORTEX_M)?;
+    let compiler = compiler(CORTEX_M).map_err(Outcome::why)?;
     let mut all = Vec::new();
     for board in &BOARDS {
         let whole = build_package("nekton-ffi", &board.machine, &compiler)?;
@@ -243,14 +243,11 @@ pub fn step(name: &str) -> Outcome {
     let Some(board) = BOARDS.iter().find(|board| board.name == name) else {
         return Outcome::Failed(format!("no board {name}"));
     };
-    let compiler = match require(&PROGRAMS).and_then(|()| compiler(CORTEX_M)) {
+    let compiler = match require(&PROGRAMS).map_err(Outcome::Skipped).and_then(|()| compiler(CORTEX_M)) {
         Ok(compiler) => compiler,
-        Err(why) => return Outcome::Skipped(why),
+        Err(outcome) => return outcome,
     };
-    match board.measure(&compiler).and_then(|rows| hold(&rows)) {
-        Ok(()) => Outcome::Passed,
-        Err(why) => Outcome::Failed(why),
-    }
+    board.measure(&compiler).and_then(|rows| hold(&rows)).into()
 }
 
 /// Committed figures, and README's table of them, must be those measured, but for what another compiler's version makes of it.
@@ -309,7 +306,8 @@ fn table() -> Result<String, String> {
 
 /// `cargo xtask firmware`: measures and writes the figures, and prints README's table.
 pub fn run() -> ExitCode {
-    let made = require(&PROGRAMS).and_then(|()| compiler(CORTEX_M)).and_then(|compiler| {
+    let compiler = require(&PROGRAMS).and_then(|()| compiler(CORTEX_M).map_err(Outcome::why));
+    let made = compiler.and_then(|compiler| {
         let mut rows = Vec::new();
         for board in &BOARDS {
             rows.extend(board.measure(&compiler)?);

@@ -11,6 +11,7 @@ mod extremes;
 mod firmware;
 mod fuzz;
 mod header;
+mod layers;
 mod speed;
 mod steps;
 mod test;
@@ -21,7 +22,9 @@ use std::process::ExitCode;
 const USAGE: &str = "usage: cargo xtask <command>
 
 commands:
-  test       everything: format, lints, builds without std and without heap, tests, documentation, scenes
+  test [--no-skips] [--list] [WORD...]
+             everything: format, lints, builds without std and without heap, tests, documentation, scenes; or the steps
+             with one of the words in their names (--list: only the names; --no-skips: a skipped step counts as failed)
   firmware   docs/embedded.csv: size and speed on emulated microcontrollers
   prelink    target/freestanding/libnekton.a: one object, only nekton's symbols
   bench [--tables]
@@ -44,6 +47,9 @@ commands:
              docs/accuracy: speed against accuracy of every scene, the paper's figures (25 minutes; --quick: one minute, into
              target/accuracy; --resume: goes on with a run that was cut off; --tables: only what is measured already;
              SCENE: one of scenes/, without repeating what is measured)
+  layers [--picture] [FOLDER]
+             checks the imports of core against the order of its layers, and that no crate has circles of files; --picture:
+             writes docs/layers.svg (FOLDER: in another checkout)
   header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
@@ -51,7 +57,10 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["test"] => test::run(),
+        ["test", words @ ..] => match steps::Wish::of(words) {
+            Some(wish) => test::run(wish),
+            None => usage(),
+        },
         ["bench"] => bench::run(),
         ["bench", "--tables"] => bench::tables(),
         ["bench-guard"] => bench::guard(),
@@ -67,6 +76,10 @@ fn main() -> ExitCode {
         ["trade", "--tables"] => steps::Steps::only("tables", trade::collected),
         ["trade", "--quick"] => steps::Steps::only("trade", trade::quick),
         ["trade", scene] if !scene.starts_with('-') => trade::one(scene),
+        ["layers"] => layers::run(None),
+        ["layers", "--picture"] => layers::write_picture(None),
+        ["layers", "--picture", folder] => layers::write_picture(Some(folder)),
+        ["layers", folder] if !folder.starts_with('-') => layers::run(Some(folder)),
         ["header"] => header::run(),
         ["extremes", "--tables"] => extremes::pages(),
         ["extremes", runs @ ..] if runs.iter().all(|word| !word.starts_with('-')) => extremes::run(runs),
@@ -74,9 +87,11 @@ fn main() -> ExitCode {
             print!("{USAGE}");
             ExitCode::SUCCESS
         }
-        _ => {
-            eprint!("{USAGE}");
-            ExitCode::from(2)
-        }
+        _ => usage(),
     }
+}
+
+fn usage() -> ExitCode {
+    eprint!("{USAGE}");
+    ExitCode::from(2)
 }

@@ -48,12 +48,7 @@ pub fn draw(title: &str, rows: &[Measured], reference: &Reference) -> Outcome<St
         colour: RGBColor(150, 150, 150),
         marks: Marks::Level,
     });
-    chart(
-        &format!("{title}: error against time, to t = {} s", super::shown(reference.until)),
-        "time per simulated second (s/s)",
-        "relative error",
-        &curves,
-    )
+    chart(title, "time per simulated second (s/s)", "relative error", &curves)
 }
 
 fn method_index(name: &str) -> usize {

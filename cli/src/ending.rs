@@ -1,0 +1,15 @@
+//! What every command does at its end.
+
+/// How a command ended that did not fail.
+pub enum Ending {
+    /// As asked.
+    Complete,
+    /// With results, but before the end.
+    Stopped,
+}
+
+/// Prints to standard output; a reader that has gone away (`nekton … | head`) is no error.
+pub fn say(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stdout(), "{text}");
+}
