@@ -71,5 +71,6 @@ pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};
 pub use simulation::diagnostics::Energy;
-pub use simulation::sim::{Method, STEP_LIMIT, Sim, SimHead, SimRequirement};
+pub use simulation::sim::{STEP_LIMIT, Sim, SimHead, SimRequirement};
+pub use simulation::state::Method;
 pub use simulation::time_error::TimeError;

@@ -58,13 +58,13 @@ pub(crate) fn periodic_derivative<R: Real>(f: &[R], k: usize) -> R {
 /// (2.15) per unit density: fills `kernel` so that the force is Σ ψ_a kernel, and adds to `out` (link frames) the part
 /// that multiplies b_a. With ∂τ integrated by parts, −∫ ∂τψ_a ∂τψ v_n = ∫ ψ_a ∂τ(∂τψ v_n).
 ///
-/// `potential` is ψ of the motion; `v` the links' velocities in their frames; `work` scratch of length N. O(N²).
+/// `potential` is ψ of the motion; `v` the links' velocities in their frames; `products` scratch of length N. O(N²).
 pub(crate) fn boundary_formula<R: Real>(
     c: &Configuration<'_, R>,
     potential: &[R],
     v: &[R],
     kernel: &mut [R],
-    work: &mut [R],
+    products: &mut [R],
     out: &mut [R],
 ) {
     kernel.fill(R::zero());
@@ -72,7 +72,7 @@ pub(crate) fn boundary_formula<R: Real>(
         let Some(link) = b.link else { continue };
         let twist = twist_of(v, link);
         let psi = part(potential, b.first, b.nodes);
-        let product = part_mut(work, b.first, b.nodes);
+        let product = part_mut(products, b.first, b.nodes);
         let kernel = part_mut(kernel, b.first, b.nodes);
         let (mut linear, mut angular) = (Complex::default(), R::zero());
         for (k, (x, d)) in nodes.points().zip(nodes.tangents()).enumerate() {

@@ -40,8 +40,8 @@ impl<R: Real> Abm4<R> {
         Abm4 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
@@ -58,8 +58,8 @@ impl<R: Real> Abm4<R> {
 
     /// Estimated local error of the last step, unknown by unknown, by Milne's device: 19/270 of the difference
     /// of corrector and predictor. `None` after a Runge–Kutta step.
-    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
-        self.past.estimated.then(|| part(work, 0, dim))
+    pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        self.past.estimated.then(|| part(memory, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative. A step that differs from the last one
@@ -74,10 +74,10 @@ impl<R: Real> Abm4<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
-        let b = Buffers::take(&y.len(), &mut { work })?;
+        let b = Buffers::take(&y.len(), &mut { memory })?;
         let known = self.past.begin(h, b.rest);
         // The second evaluation of PECE, at the corrected state, is made when the next step begins.
         evaluate(system, &mut self.past.counters, t, y, b.rate)?;

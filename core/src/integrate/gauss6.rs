@@ -74,8 +74,8 @@ impl<R: Real> Gauss6<R> {
         Gauss6 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
@@ -102,10 +102,10 @@ impl<R: Real> Gauss6<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
-        let mut b = Buffers::take(&y.len(), &mut { work })?;
+        let mut b = Buffers::take(&y.len(), &mut { memory })?;
         let known = self.past.begin(h, b.rest) > 0;
         evaluate(system, &mut self.past.counters, t, y, b.rate)?;
         let solved = if known {

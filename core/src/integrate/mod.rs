@@ -10,7 +10,7 @@
 //! Every method sums the state with compensation, so that many short steps do not add up their rounding.
 //!
 //! The integrators are small `Copy` values; everything that grows with the dimension lies in a work slice
-//! of `work_len(dim)` numbers, which belongs to one integrator from one call to the next.
+//! of `memory_len(dim)` numbers, which belongs to one integrator from one call to the next.
 
 pub(crate) mod abm4;
 pub(crate) mod adams;

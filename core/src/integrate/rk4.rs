@@ -47,8 +47,8 @@ impl<R: Real> Rk4<R> {
         Rk4 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
@@ -65,8 +65,8 @@ impl<R: Real> Rk4<R> {
 
     /// Estimated local error of the step before the last, unknown by unknown. `None` until there were six
     /// equal steps before it.
-    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
-        self.past.estimated.then(|| part(work, 0, dim))
+    pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        self.past.estimated.then(|| part(memory, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
@@ -80,11 +80,11 @@ impl<R: Real> Rk4<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
         let dim = y.len();
-        let b = Buffers::take(&dim, &mut { work })?;
+        let b = Buffers::take(&dim, &mut { memory })?;
         let known = self.past.begin(h, b.rest);
         evaluate(system, &mut self.past.counters, t, y, b.first)?;
         let estimated = known == PAST;

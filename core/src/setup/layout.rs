@@ -55,8 +55,8 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             layout.wall_nodes = sum(layout.wall_nodes, item.nodes)?;
         }
         if traits.graded {
-            let here = |e: Error| e.at(item.place);
-            let own = item.shape.store_len().map_err(here)?;
+            let at_place = |e: Error| e.at(item.place);
+            let own = item.shape.store_len().map_err(at_place)?;
             let walls = if item.link.is_none() { 2 } else { 1 };
             // The shape's store holds at least its permanent rungs.
             let len = grading_len(walls * rung_allowance(item.nodes))
@@ -66,10 +66,10 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             layout.rungs = sum(layout.rungs, len)?;
         }
         if twin_of(scene, i, &item).is_none() {
-            let here = |e: Error| e.at(item.place);
-            s.store_len = item.shape.store_len().map_err(here)?;
+            let at_place = |e: Error| e.at(item.place);
+            s.store_len = item.shape.store_len().map_err(at_place)?;
             if traits.graded {
-                let (mut ladders, tips) = item.shape.ladder_counts().map_err(here)?;
+                let (mut ladders, tips) = item.shape.ladder_counts().map_err(at_place)?;
                 if item.link.is_none() && walls > 1 {
                     // Ladders that walls cause on each other are permanent.
                     ladders = sum(ladders, MOST_LADDERS)?;
@@ -98,7 +98,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
                     (s.regular_at, at) = (at, sum(at, square(item.nodes)?)?);
                 }
             }
-            scratch = scratch.max(item.shape.scratch_len().map_err(here)?);
+            scratch = scratch.max(item.shape.scratch_len().map_err(at_place)?);
             if fluid && item.link.is_some() && !closed {
                 scratch = scratch.max(potential_scratch(s.modes, item.nodes).ok_or(Status::SizeOverflow)?);
             }

@@ -7,7 +7,8 @@ use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scene::Description;
 use crate::setup::automatic_nodes::{Finer, automatic, target};
 use crate::setup::compile::ModelMemory;
-use crate::simulation::sim::{Method, Sim, SimHead};
+use crate::simulation::sim::{Sim, SimHead};
+use crate::simulation::state::Method;
 use alloc::{sync::Arc, vec, vec::Vec};
 
 /// A compiled scene that owns its memory. `Send + Sync`.

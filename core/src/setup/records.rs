@@ -7,8 +7,8 @@ use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::fluid::gap::Placed;
 use crate::fluid::near::buffers::{LADDERS, LISTS, LadderLists, listed};
-use crate::fluid::near::{ladders, pole};
 use crate::fluid::near::preimage::Source;
+use crate::fluid::near::{ladders, pole};
 use crate::fluid::rotation::fill_rotation_potential;
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
 use crate::geometry::nodes::write_nodes;
@@ -27,7 +27,7 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
     scratch: &mut [R],
 ) -> Result<()> {
     for (i, item) in items(scene).enumerate() {
-        let here = |e: Error| e.at(item.place);
+        let at_place = |e: Error| e.at(item.place);
         let twin = twin_of(scene, i, &item).and_then(|j| boundaries.get(j).copied());
         let Some(record) = boundaries.get_mut(i) else { return Err(Status::Internal.into()) };
         if let Some(twin) = twin {
@@ -45,21 +45,21 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
             continue;
         }
         let own = part_mut(store, record.slots.store_at, record.slots.store_len);
-        (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(here)?;
+        (record.outline, record.notice) = item.shape.compile(own, scratch).map_err(at_place)?;
         if features::NEAR && traits.graded {
-            list_ladders(record, &item.shape, store).map_err(here)?;
+            list_ladders(record, &item.shape, store).map_err(at_place)?;
         }
         let own = part(store, record.slots.store_at, record.slots.store_len);
         if let Some(centre) = item.centre {
-            let area = record.outline.view(own).properties().map_err(here)?;
+            let area = record.outline.view(own).properties().map_err(at_place)?;
             record.origin = area.centroid + complex(centre[0], centre[1]);
         }
-        fill_nodes(record, store).map_err(here)?;
+        fill_nodes(record, store).map_err(at_place)?;
         if !traits.fluid {
             continue;
         }
         if item.link.is_some() {
-            fill_rotation_potential(record, store, scratch).map_err(here)?;
+            fill_rotation_potential(record, store, scratch).map_err(at_place)?;
             if traits.formulation != Formulation::Kirchhoff {
                 let n2 = item.nodes * item.nodes;
                 // The blocks lie behind the node arrays they are made from.

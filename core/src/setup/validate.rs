@@ -38,9 +38,9 @@ pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
         return Err(Status::EmptyScene.into());
     }
     for item in items(scene) {
-        let here = |e: Error| e.at(item.place);
+        let at_place = |e: Error| e.at(item.place);
         if item.nodes < LEAST_NODES || item.nodes % 2 != 0 || item.nodes > MOST_NODES {
-            return Err(here(Error::new(Status::NodeCount).of("nodes", item.nodes as f64)));
+            return Err(at_place(Error::new(Status::NodeCount).of("nodes", item.nodes as f64)));
         }
         for (what, x) in [
             ("circulation", item.circulation),
@@ -48,21 +48,21 @@ pub(crate) fn validate<R: Real, S: Description<R>>(scene: &S) -> Result<()> {
             ("position", item.pose.origin.im),
             ("angle", item.pose.turn.re),
         ] {
-            finite(what, x).map_err(here)?;
+            finite(what, x).map_err(at_place)?;
         }
         if item.place == Place::Tank && item.circulation != R::zero() {
-            return Err(here(Error::new(Status::OutOfRange).of("circulation", item.circulation.to_f64())));
+            return Err(at_place(Error::new(Status::OutOfRange).of("circulation", item.circulation.to_f64())));
         }
     }
     for (b, body) in (0..scene.body_count()).filter_map(|b| Some((b, scene.body(b)?))) {
-        let here = |e: Error| e.at(Place::Body(b));
+        let at_place = |e: Error| e.at(Place::Body(b));
         for (what, values) in [("position", body.pose), ("velocity", body.velocity)] {
             for x in values {
-                finite(what, x).map_err(here)?;
+                finite(what, x).map_err(at_place)?;
             }
         }
         if scene.link_count(b) == 0 {
-            return Err(here(Error::new(Status::EmptyScene).of("links", 0.0)));
+            return Err(at_place(Error::new(Status::EmptyScene).of("links", 0.0)));
         }
     }
     for (b, l, link) in each_link(scene) {

@@ -133,7 +133,9 @@ impl<R: Real> Sim<'_, R> {
         for ((torque, power), (k, c)) in torque.iter_mut().zip(power.iter_mut()).zip(joints) {
             let (u, du) = (at(self.evaluation.coordinates.s, k), at(self.evaluation.coordinates.ds, k));
             *torque = match c.control {
-                Control::Torque => joint_torque(&model, k, self.head.time, self.evaluation.coordinates.channels, u, du),
+                Control::Torque => {
+                    joint_torque(&model, k, self.progress.time, self.evaluation.coordinates.channels, u, du)
+                }
                 _ => at(self.evaluation.forces.generalized, k),
             };
             *power = *torque * du;

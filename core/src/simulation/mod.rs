@@ -6,5 +6,6 @@ pub(crate) mod right_hand_side;
 pub(crate) mod sim;
 #[cfg(feature = "bench")]
 pub mod stages;
+pub(crate) mod state;
 pub(crate) mod stepping;
 pub(crate) mod time_error;

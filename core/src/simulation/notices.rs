@@ -5,7 +5,8 @@
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::indicators::Resolution;
-use crate::simulation::sim::{Sim, Watch};
+use crate::simulation::sim::Sim;
+use crate::simulation::state::Watch;
 
 /// Estimated error of one step (of positions, and of velocities over another step), in reaches of a link or in radians, from which
 /// on steps are too long.
@@ -19,12 +20,12 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As [`Sim::energy`], before the first step only.
     pub fn indicators(&mut self) -> Result<Resolution<R>> {
-        if self.head.watch == Watch::Nothing {
+        if self.progress.watch == Watch::Nothing {
             self.refresh()?;
             let model = self.model;
             return Ok(self.evaluation.resolution(&model));
         }
-        Ok(self.head.worst)
+        Ok(self.progress.worst)
     }
 
     /// What is to be noticed of the last call of [`Sim::step`] or [`Sim::advance`], and when it was worst; `None` if there is
@@ -34,9 +35,9 @@ impl<R: Real> Sim<'_, R> {
     /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
     ///   error and the boundaries that are now closest to each other. Never if none was asked for. O(N²) for that gap.
     pub fn notice(&mut self) -> Option<(R, Error)> {
-        if self.head.watch != Watch::Nothing && self.head.coarsest >= R::lit(STEP_ERROR_LIMIT) {
-            let notice = Error::new(Status::StepTooLong).of("error", self.head.coarsest.to_f64());
-            return Some((self.head.coarsest_time, notice));
+        if self.progress.watch != Watch::Nothing && self.progress.coarsest >= R::lit(STEP_ERROR_LIMIT) {
+            let notice = Error::new(Status::StepTooLong).of("error", self.progress.coarsest.to_f64());
+            return Some((self.progress.coarsest_time, notice));
         }
         let asked = self.model.head.tolerance;
         if asked == R::zero() {
@@ -46,7 +47,7 @@ impl<R: Real> Sim<'_, R> {
         if bound <= asked {
             return None;
         }
-        let time = if self.head.watch == Watch::Nothing { self.head.time } else { self.head.worst_time };
+        let time = if self.progress.watch == Watch::Nothing { self.progress.time } else { self.progress.worst_time };
         let notice = Error::new(Status::Unresolved).of("error", bound.to_f64());
         Some((time, self.gap().between.map_or(notice, |(a, b)| notice.at(a).with(b))))
     }

@@ -1,7 +1,7 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 
-use crate::base::memory::{at, buffers, copy, put};
+use crate::base::memory::{at, copy, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Dims, Evaluation, Kept};
@@ -12,40 +12,11 @@ use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
 use crate::model::signal::CHANNEL_LEN;
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::simulation::right_hand_side::{RightHandSide, split_state};
+use crate::simulation::state::{Clock, Method, Progress, State, StateDims, Watch};
 use crate::simulation::time_error::TimeError;
 
 /// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
 pub const STEP_LIMIT: u64 = 1_000_000;
-
-/// Integrator of a simulation.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Method<R> {
-    /// Classical Runge–Kutta of order 4, fixed step, 4 evaluations per step.
-    Rk4 {
-        /// Step, s.
-        step: R,
-    },
-    /// Adams–Bashforth–Moulton of order 4 (PECE), fixed step, 2 evaluations per step.
-    Abm4 {
-        /// Step, s.
-        step: R,
-    },
-    /// Adams–Bashforth–Moulton of variable order 1–12 and variable step, 2 evaluations per step: the method of
-    /// Matlab's `ode113`, with its error control: |error| ≤ max(relative |y|, absolute) per step and component.
-    Adams {
-        /// Relative tolerance.
-        relative: R,
-        /// Absolute tolerance.
-        absolute: R,
-    },
-    /// Implicit Gauss–Legendre of order 6, fixed step, 20 to 40 evaluations per step: for long runs, since the energy
-    /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
-    /// `implicit`, which `std` includes.
-    Gauss6 {
-        /// Step, s.
-        step: R,
-    },
-}
 
 /// Length of a simulation's memory.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -74,68 +45,6 @@ pub struct SimHead<R> {
     pub(crate) kept: Kept<R>,
 }
 
-/// How far a simulation is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Progress<R> {
-    pub(crate) method: Method<R>,
-    /// Time of the state shown.
-    pub(crate) time: R,
-    pub(crate) clock: Clock<R>,
-    pub(crate) adams: Adams<R>,
-    pub(crate) rk4: Rk4<R>,
-    pub(crate) abm4: Abm4<R>,
-    pub(crate) gauss6: Gauss6<R>,
-    pub(crate) step_limit: u64,
-    pub(crate) time_error: TimeError<R>,
-    pub(crate) impulse: [R; 3],
-    pub(crate) counters: Counters,
-    /// Largest error indicators over the steps of one call, and when the larger one was met.
-    pub(crate) worst: Resolution<R>,
-    pub(crate) worst_time: R,
-    /// Largest estimated error of a step of that call (see [`TimeError::add`]), and when it was made.
-    pub(crate) coarsest: R,
-    pub(crate) coarsest_time: R,
-    /// What `worst` belongs to.
-    pub(crate) watch: Watch,
-}
-
-/// How the time shown came about.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub(crate) enum Clock<R> {
-    /// By so many full steps of a fixed-step method from `base`.
-    Counted { base: R, steps: u64 },
-    /// It was set: a variable-step method has still to begin there.
-    Set,
-    /// A variable-step method holds the state shown or a later one.
-    Running,
-}
-
-impl<R: Real> Progress<R> {
-    /// The next step starts anew from the time shown.
-    pub(crate) fn set_clock(&mut self) {
-        self.clock = match self.method {
-            Method::Adams { .. } => Clock::Set,
-            _ => Clock::Counted { base: self.time, steps: 0 },
-        };
-    }
-
-    /// Whether a variable-step method has begun.
-    pub(crate) fn runs(&self) -> bool {
-        self.clock == Clock::Running
-    }
-}
-
-/// What the largest indicators of a simulation belong to.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(crate) enum Watch {
-    /// No step since the state was set.
-    Nothing,
-    /// A call that is over: the next step starts anew.
-    Past,
-    /// The call that is under way.
-    Present,
-}
-
 impl<R: Real> SimHead<R> {
     /// Makes what a simulation remembers that of another one of its model, or of itself at an earlier time; the reals of
     /// [`Sim::remembered`] have to be copied with it. The scratch stays its own.
@@ -145,60 +54,10 @@ impl<R: Real> SimHead<R> {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StateDims {
-    state: usize,
-    links: usize,
-    boundaries: usize,
-    channels: usize,
-    coordinates: usize,
-}
-
-impl StateDims {
-    fn of<R: Real>(head: &ModelHead<R>, coordinates: usize) -> StateDims {
-        let p = &head.plan;
-        StateDims {
-            state: p.state_len,
-            links: p.links,
-            boundaries: p.links + p.walls,
-            channels: head.channels,
-            coordinates,
-        }
-    }
-    fn work<R: Real>(&self) -> Option<usize> {
-        let n = self.state;
-        let lens = [Rk4::<R>::work_len(n), Abm4::<R>::work_len(n), Adams::<R>::work_len(n), Gauss6::<R>::work_len(n)];
-        lens.into_iter().try_fold(0, |most, len| Some(most.max(len?)))
-    }
-}
-
-buffers! {
-    /// What a simulation remembers.
-    pub(crate) struct State(d: StateDims) {
-        /// The integrated state (see [`Sim::state`]) at the time shown.
-        y: R = d.state,
-        /// The state before the step under way.
-        saved: R = d.state,
-        /// Scratch of interpolation.
-        rate: R = d.state,
-        /// What is shown · 3n each.
-        positions: R = 3 * d.links,
-        velocities: R = 3 * d.links,
-        /// Placements and headings at the last accepted state: no trial state may lie beyond another body · 4b + n.
-        anchor: R = 4 * d.boundaries + d.links,
-        /// u, u̇ of every coordinate shown, in pairs · 2c.
-        joints: R = 2 * d.coordinates,
-        /// Inputs of the channels · 8 each.
-        commands: R = d.channels * CHANNEL_LEN,
-        /// Memory of the integrator, which it lays out itself.
-        integrator: R = d.work::<R>().unwrap_or(usize::MAX),
-    }
-}
-
 /// A simulation in the caller's memory.
 pub struct Sim<'a, R: Real> {
     pub(crate) model: Model<'a, R>,
-    pub(crate) head: &'a mut Progress<R>,
+    pub(crate) progress: &'a mut Progress<R>,
     pub(crate) state: State<'a, R>,
     pub(crate) evaluation: Evaluation<'a, R>,
 }
@@ -295,7 +154,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         placed.map_err(|e| if e.status == Status::Contact { Error { status: Status::Overlap, ..e } } else { e })?;
         if locked {
-            sim.head.impulse = sim.evaluation.impulse_of_motion(&model, p, &rates)?;
+            sim.progress.impulse = sim.evaluation.impulse_of_motion(&model, p, &rates)?;
         }
         sim.show()?;
         Ok(sim)
@@ -313,12 +172,12 @@ impl<'a, R: Real> Sim<'a, R> {
         let dims = StateDims::of(model.head, model.coordinates.len());
         let len = State::<R>::len(&dims).ok_or(Status::SizeOverflow)?;
         let (mut state, scratch) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
-        let SimHead { progress: head, kept } = head;
+        let SimHead { progress, kept } = head;
         let evaluation = Evaluation::split(&Dims::of(model.head, model.coordinates.len()), kept, scratch)?;
         let state = State::take(&dims, &mut state)?;
         // What is remembered may have been put back (see `remembered`).
         copy(evaluation.coordinates.channels, state.commands);
-        Ok(Sim { model, head, state, evaluation })
+        Ok(Sim { model, progress, state, evaluation })
     }
 
     /// The model.
@@ -327,7 +186,7 @@ impl<'a, R: Real> Sim<'a, R> {
     }
     /// Time of the state shown, s.
     pub fn time(&self) -> R {
-        self.head.time
+        self.progress.time
     }
     /// x, y, θ of every link's centre of mass (3 per link).
     pub fn positions(&self) -> &[R] {
@@ -339,9 +198,9 @@ impl<'a, R: Real> Sim<'a, R> {
     }
     /// Counts since the start, of what stepping and [`Sim::rhs`] did (diagnostics are not counted).
     pub fn counters(&self) -> Counters {
-        let mut c = self.head.counters;
-        if let Method::Adams { .. } = self.head.method {
-            let a = self.head.adams.counters();
+        let mut c = self.progress.counters;
+        if let Method::Adams { .. } = self.progress.method {
+            let a = self.progress.adams.counters();
             (c.steps, c.rejected) = (a.steps, a.rejected);
         }
         c
@@ -360,7 +219,7 @@ impl<'a, R: Real> Sim<'a, R> {
     ///
     /// No estimate takes an evaluation. None sees the error of space, for which there is [`Sim::resolution`].
     pub fn time_error(&self) -> TimeError<R> {
-        self.head.time_error
+        self.progress.time_error
     }
 
     /// How many steps one call of [`Sim::advance`] or [`Sim::advance_dense`] may make; at first [`STEP_LIMIT`].
@@ -371,23 +230,23 @@ impl<'a, R: Real> Sim<'a, R> {
         if steps == 0 {
             return Err(Error::new(Status::OutOfRange).of("step_limit", 0.0));
         }
-        self.head.step_limit = steps;
+        self.progress.step_limit = steps;
         Ok(())
     }
 
     /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
     pub(crate) fn note_error(&mut self, estimated: bool, t: R, h: R) {
         let (n, memory) = (self.state.y.len(), &*self.state.integrator);
-        let error = match self.head.method {
+        let error = match self.progress.method {
             _ if !estimated => None,
-            Method::Rk4 { .. } => self.head.rk4.error(n, memory),
-            Method::Abm4 { .. } => self.head.abm4.error(n, memory),
-            Method::Adams { .. } => self.head.adams.error(memory),
+            Method::Rk4 { .. } => self.progress.rk4.error(n, memory),
+            Method::Abm4 { .. } => self.progress.abm4.error(n, memory),
+            Method::Adams { .. } => self.progress.adams.error(memory),
             Method::Gauss6 { .. } => None,
         };
-        let relative = self.head.time_error.add(error, h, &self.model);
-        if relative > self.head.coarsest {
-            (self.head.coarsest, self.head.coarsest_time) = (relative, t);
+        let relative = self.progress.time_error.add(error, h, &self.model);
+        if relative > self.progress.coarsest {
+            (self.progress.coarsest, self.progress.coarsest_time) = (relative, t);
         }
     }
 
@@ -409,9 +268,9 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(Status::NotFinite.into());
         }
         copy(self.state.saved, self.state.y);
-        let before = self.head.time;
+        let before = self.progress.time;
         copy(self.state.y, y);
-        self.head.time = t;
+        self.progress.time = t;
         let mut shown = self.show();
         if shown.is_ok()
             && let Some((a, b)) = first_misplaced(&self.model, Poses(self.evaluation.placement.poses))
@@ -420,13 +279,13 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         if let Err(e) = shown {
             copy(self.state.y, self.state.saved);
-            self.head.time = before;
+            self.progress.time = before;
             self.show()?;
             return Err(e);
         }
-        self.head.watch = Watch::Nothing;
+        self.progress.watch = Watch::Nothing;
         self.restart();
-        self.head.time_error = TimeError::default();
+        self.progress.time_error = TimeError::default();
         Ok(())
     }
 
@@ -470,9 +329,9 @@ impl<'a, R: Real> Sim<'a, R> {
         let mut system = RightHandSide {
             model: self.model,
             evaluation: &mut self.evaluation,
-            impulse: self.head.impulse,
+            impulse: self.progress.impulse,
             anchor: None,
-            counters: &mut self.head.counters,
+            counters: &mut self.progress.counters,
         };
         let result = system.rhs(t, y, ydot);
         if result.is_err() {

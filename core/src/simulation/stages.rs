@@ -32,7 +32,7 @@ impl<R: Real> Sim<'_, R> {
         match stage {
             Stage::Place => {
                 let (p, dp) = split_state(&model, self.state.y);
-                evaluation.place(&model, self.head.time, p, dp)
+                evaluation.place(&model, self.progress.time, p, dp)
             }
             Stage::Grade => evaluation.grade(&model),
             Stage::Assemble => {
@@ -42,7 +42,7 @@ impl<R: Real> Sim<'_, R> {
                 Ok(())
             }
             Stage::Solve => evaluation.solve_fluid(&model, &mut Counters::default()),
-            Stage::Force => evaluation.accelerate(&model, self.head.time),
+            Stage::Force => evaluation.accelerate(&model, self.progress.time),
         }
     }
 }

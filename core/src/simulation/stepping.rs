@@ -9,7 +9,8 @@ use crate::fluid::contact::{set_anchor, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::model::Formulation;
 use crate::simulation::right_hand_side::{RightHandSide, split_state};
-use crate::simulation::sim::{Clock, Method, Sim, Watch};
+use crate::simulation::sim::Sim;
+use crate::simulation::state::{Clock, Method, Watch};
 
 impl<R: Real> Sim<'_, R> {
     /// One step of the method (for `Adams` one step of its own choice).
@@ -18,13 +19,13 @@ impl<R: Real> Sim<'_, R> {
     /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`, `NoConvergence`; time and state are then as before.
     pub fn step(&mut self) -> Result<()> {
         self.begin_watch();
-        match self.head.method {
+        match self.progress.method {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 self.fixed_step(step, true)?;
             }
             Method::Adams { .. } => {
                 self.adams_step(R::MAX)?;
-                self.show_adams(self.head.adams.time())?;
+                self.show_adams(self.progress.adams.time())?;
             }
         }
         Ok(())
@@ -46,20 +47,20 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
     pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
-        if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.head.time) {
+        if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.progress.time) {
             return Err(Error::new(Status::BadStep).of("t", t_out.to_f64()));
         }
-        if t_out == self.head.time {
+        if t_out == self.progress.time {
             return Ok(());
         }
         self.begin_watch();
-        let mut left = self.head.step_limit;
-        match self.head.method {
+        let mut left = self.progress.step_limit;
+        match self.progress.method {
             Method::Adams { .. } => {
-                while !self.head.runs() || self.head.adams.time() < t_out {
+                while !self.progress.runs() || self.progress.adams.time() < t_out {
                     if let Err(e) = self.spend(&mut left).and_then(|()| self.adams_step(t_stop)) {
-                        if self.head.runs() && self.head.adams.time() > self.head.time {
-                            self.show_adams(self.head.adams.time())?;
+                        if self.progress.runs() && self.progress.adams.time() > self.progress.time {
+                            self.show_adams(self.progress.adams.time())?;
                         }
                         return Err(e);
                     }
@@ -70,7 +71,7 @@ impl<R: Real> Sim<'_, R> {
                 // Rounding of the time must not make a step of almost no length.
                 let slack = step * R::lit(1e-6).max(R::lit(8.0) * R::EPSILON);
                 loop {
-                    let rest = t_out - self.head.time;
+                    let rest = t_out - self.progress.time;
                     if rest <= slack {
                         break;
                     }
@@ -82,7 +83,7 @@ impl<R: Real> Sim<'_, R> {
                         break;
                     }
                 }
-                self.head.time = t_out;
+                self.progress.time = t_out;
                 Ok(())
             }
         }
@@ -92,20 +93,20 @@ impl<R: Real> Sim<'_, R> {
     fn spend(&self, left: &mut u64) -> Result<()> {
         *left = left
             .checked_sub(1)
-            .ok_or_else(|| Error::new(Status::TooManySteps).of("step_limit", self.head.step_limit as f64))?;
+            .ok_or_else(|| Error::new(Status::TooManySteps).of("step_limit", self.progress.step_limit as f64))?;
         Ok(())
     }
 
     /// Forgets the integrator's past, as after a jump of the drives.
     pub fn restart(&mut self) {
         self.forget_steps();
-        self.head.set_clock();
+        self.progress.set_clock();
     }
 
     /// A call begins: its first step forgets the indicators of the call before.
     fn begin_watch(&mut self) {
-        if self.head.watch == Watch::Present {
-            self.head.watch = Watch::Past;
+        if self.progress.watch == Watch::Present {
+            self.progress.watch = Watch::Past;
         }
     }
 
@@ -113,63 +114,65 @@ impl<R: Real> Sim<'_, R> {
     fn watch(&mut self, t: R) {
         let model = self.model;
         let here = self.evaluation.resolution(&model);
-        if self.head.watch != Watch::Present {
-            (self.head.worst, self.head.worst_time) = (Resolution::default(), t);
-            self.head.coarsest = R::zero();
-            self.head.watch = Watch::Present;
+        if self.progress.watch != Watch::Present {
+            (self.progress.worst, self.progress.worst_time) = (Resolution::default(), t);
+            self.progress.coarsest = R::zero();
+            self.progress.watch = Watch::Present;
         }
-        let worst = self.head.worst;
+        let worst = self.progress.worst;
         if here.bound() > worst.bound() {
-            self.head.worst_time = t;
+            self.progress.worst_time = t;
         }
-        self.head.worst = worst.max(&here);
+        self.progress.worst = worst.max(&here);
     }
 
     /// One step of a fixed-step method; `regular` steps keep the multistep history.
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
-        let t = self.head.time;
+        let t = self.progress.time;
         if !regular {
             self.forget_steps();
         }
         let mut system = RightHandSide {
             model: self.model,
             evaluation: &mut self.evaluation,
-            impulse: self.head.impulse,
+            impulse: self.progress.impulse,
             anchor: Some(self.state.anchor),
-            counters: &mut self.head.counters,
+            counters: &mut self.progress.counters,
         };
         let (y, memory) = (&mut *self.state.y, &mut *self.state.integrator);
-        let stepped = match self.head.method {
-            Method::Abm4 { .. } if regular => self.head.abm4.step(&mut system, t, h, y, memory),
-            Method::Gauss6 { .. } if cfg!(feature = "implicit") => self.head.gauss6.step(&mut system, t, h, y, memory),
-            _ => self.head.rk4.step(&mut system, t, h, y, memory),
+        let stepped = match self.progress.method {
+            Method::Abm4 { .. } if regular => self.progress.abm4.step(&mut system, t, h, y, memory),
+            Method::Gauss6 { .. } if cfg!(feature = "implicit") => {
+                self.progress.gauss6.step(&mut system, t, h, y, memory)
+            }
+            _ => self.progress.rk4.step(&mut system, t, h, y, memory),
         };
-        let next = match self.head.clock {
+        let next = match self.progress.clock {
             // Counted, not summed: the rounding of h does not pile up.
             Clock::Counted { base, steps } if regular => base + R::count(steps as usize + 1) * h,
             _ => t + h,
         };
         let arrived = stepped.and_then(|()| {
-            self.head.time = next;
+            self.progress.time = next;
             self.show_checked()
         });
         if let Err(e) = arrived {
             copy(self.state.y, self.state.saved);
-            self.head.time = t;
+            self.progress.time = t;
             self.forget_steps();
-            self.head.counters.rejected += 1;
+            self.progress.counters.rejected += 1;
             self.show()?;
             return Err(e);
         }
         self.watch(next);
-        self.head.counters.steps += 1;
+        self.progress.counters.steps += 1;
         self.note_error(regular, next, h);
-        match &mut self.head.clock {
+        match &mut self.progress.clock {
             Clock::Counted { steps, .. } if regular => *steps += 1,
             _ => {
                 self.forget_steps();
-                self.head.set_clock();
+                self.progress.set_clock();
             }
         }
         Ok(())
@@ -177,50 +180,50 @@ impl<R: Real> Sim<'_, R> {
 
     /// Forgets what the fixed-step methods remember of earlier steps.
     fn forget_steps(&mut self) {
-        self.head.rk4.reset();
-        self.head.abm4.reset();
-        self.head.gauss6.reset();
+        self.progress.rk4.reset();
+        self.progress.abm4.reset();
+        self.progress.gauss6.reset();
     }
 
     /// One accepted step of the variable-step method.
     fn adams_step(&mut self, t_stop: R) -> Result<()> {
-        let mut adams = self.head.adams;
-        if !self.head.runs() {
-            adams.start(self.head.time, self.state.y, self.state.integrator)?;
-            self.head.clock = Clock::Running;
+        let mut adams = self.progress.adams;
+        if !self.progress.runs() {
+            adams.start(self.progress.time, self.state.y, self.state.integrator)?;
+            self.progress.clock = Clock::Running;
             // Trial states are measured from the placements of the state shown; the buffers may hold others.
             let (p, _) = split_state(&self.model, self.state.y);
-            self.evaluation.place_only(&self.model, self.head.time, p, &[]);
+            self.evaluation.place_only(&self.model, self.progress.time, p, &[]);
             set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         }
         let mut system = RightHandSide {
             model: self.model,
             evaluation: &mut self.evaluation,
-            impulse: self.head.impulse,
+            impulse: self.progress.impulse,
             anchor: Some(self.state.anchor),
-            counters: &mut self.head.counters,
+            counters: &mut self.progress.counters,
         };
         let outcome = adams.step(&mut system, t_stop, self.state.integrator);
-        self.head.adams = adams;
+        self.progress.adams = adams;
         outcome?;
         self.watch(adams.time());
         self.note_error(true, adams.time(), adams.last_step());
-        let y = self.head.adams.state(self.state.integrator);
+        let y = self.progress.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);
-        self.evaluation.place_only(&self.model, self.head.adams.time(), p, &[]);
+        self.evaluation.place_only(&self.model, self.progress.adams.time(), p, &[]);
         set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         Ok(())
     }
 
     /// Shows the variable-step solution at `t`, within the last step.
     fn show_adams(&mut self, t: R) -> Result<()> {
-        let adams = self.head.adams;
+        let adams = self.progress.adams;
         if t == adams.time() {
             copy(self.state.y, adams.state(self.state.integrator));
         } else {
             adams.interpolate(t, self.state.integrator, self.state.y, self.state.rate)?;
         }
-        self.head.time = t;
+        self.progress.time = t;
         self.show()
     }
 
@@ -233,7 +236,7 @@ impl<R: Real> Sim<'_, R> {
         let zero = [R::zero(); 3];
         // A lone swimmer's rates come later, from its impulse.
         let dp = if self.model.head.plan.formulation == Formulation::LockedMomentum { &zero } else { dp };
-        self.evaluation.place(&self.model, self.head.time, p, dp)?;
+        self.evaluation.place(&self.model, self.progress.time, p, dp)?;
         if let Some((a, b)) = swept_contact(
             &self.model,
             self.state.anchor,
@@ -259,7 +262,7 @@ impl<R: Real> Sim<'_, R> {
             self.refresh()?;
         } else {
             let (p, dp) = split_state(&model, self.state.y);
-            self.evaluation.place(&model, self.head.time, p, dp)?;
+            self.evaluation.place(&model, self.progress.time, p, dp)?;
         }
         self.show_placed();
         Ok(())
@@ -274,7 +277,7 @@ impl<R: Real> Sim<'_, R> {
             put(self.state.joints, 2 * k, *u);
             put(self.state.joints, 2 * k + 1, *du);
         }
-        if !self.head.runs() {
+        if !self.progress.runs() {
             set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         }
     }
@@ -289,10 +292,10 @@ impl<R: Real> Sim<'_, R> {
         let zero = [R::zero(); 3];
         let locked = model.head.plan.formulation == Formulation::LockedMomentum;
         let dp = if locked { &zero } else { dp };
-        let mut counters = self.head.counters;
-        self.evaluation.evaluate(&model, &self.head.impulse, self.head.time, p, dp, &mut counters)?;
+        let mut counters = self.progress.counters;
+        self.evaluation.evaluate(&model, &self.progress.impulse, self.progress.time, p, dp, &mut counters)?;
         if locked && !model.head.tracks_work {
-            self.evaluation.accelerate(&model, self.head.time)?;
+            self.evaluation.accelerate(&model, self.progress.time)?;
         }
         self.evaluation.kept.shown = true;
         Ok(())
