@@ -2,15 +2,13 @@
 
 use crate::convert::check_pointer;
 use crate::diag::{Fault, Outcome};
-use crate::shared::NEKTON_ABI_VERSION;
+use crate::shared::{NEKTON_ABI_VERSION, NEKTON_ALIGN as ALIGN};
 use crate::types::{ModelHandle, SimHandle, nekton_req};
 use core::mem::MaybeUninit;
 use nekton::boundary::BoundaryRecord;
 use nekton::model::{CoordinateRecord, LinkRecord};
 use nekton::{Model, ModelHead, ModelRequirement, Real, Sim, SimHead, Status};
 
-/// Alignment of every object.
-pub(crate) const ALIGN: usize = 8;
 /// Reals begin on a cache line, wherever the object begins.
 const LINE: usize = 64;
 

@@ -172,7 +172,7 @@ fn allocate(req: &nekton_req) -> Outcome<*mut u8> {
 
 #[cfg(feature = "std")]
 unsafe fn release(mem: *mut u8, bytes: usize) {
-    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, crate::memory::ALIGN) {
+    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, crate::shared::NEKTON_ALIGN) {
         // SAFETY: from `allocate` with the same layout.
         unsafe { std::alloc::dealloc(mem, layout) };
     }

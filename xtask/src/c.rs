@@ -2,8 +2,8 @@
 
 use crate::archive::SYMBOLS;
 use crate::dist::{install, soname};
-use crate::expected::{Lines, lines, numbers};
-use crate::steps::{Outcome, Steps, ask, read, require, root};
+use nekton_steps::{Outcome, Steps, ask, read, require, root};
+use nekton_tests::printed::{Lines, lines, numbers};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};

@@ -2,7 +2,7 @@
 //! moved as a whole.
 
 use crate::archive::{HERE, Machine, prelink};
-use crate::steps::{cargo, read, root};
+use nekton_steps::{cargo, read, root};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

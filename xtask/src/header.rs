@@ -1,8 +1,8 @@
 //! `cargo xtask header`: what is made from the sources of the C interface and from the list of errors. The results are
 //! committed, so that users need neither this command nor cbindgen; a test compares them.
 
-use crate::steps::root;
 use nekton::Status;
+use nekton_steps::root;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;

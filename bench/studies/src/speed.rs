@@ -1,9 +1,11 @@
 //! Tables and plots of what `cargo xtask bench` has measured, between the markers of README.md and docs/design.md.
 
-use crate::bench::TABLE;
-use crate::steps::{Outcome, cargo, execute, read, root};
-use crate::trade::{Csv, between};
+use crate::page::{Csv, between};
+use nekton_steps::{Outcome, cargo, execute, read, root};
 use std::fs;
+
+/// Measured ratios.
+pub const TABLE: &str = "docs/bench/ratios.csv";
 
 type Result<T> = std::result::Result<T, String>;
 
