@@ -17,13 +17,17 @@ extern crate std;
 
 pub mod api32;
 pub mod api64;
+mod buffers;
 mod check;
 mod convert;
 pub mod diag;
 mod memory;
 mod model;
+mod model_object;
+mod questions;
 pub mod shared;
 mod sim;
+mod sim_object;
 pub mod types;
 
 #[cfg(not(feature = "std"))]

@@ -122,7 +122,7 @@ fn header() -> (PathBuf, String) {
         ..Default::default()
     };
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for file in ["types", "shared", "api64", "api32"] {
+    for file in ["types/definitions", "types/answers", "shared", "api64", "api32"] {
         builder = builder.with_src(root().join(format!("ffi/src/{file}.rs")));
     }
     let mut bytes = Vec::new();
