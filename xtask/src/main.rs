@@ -29,7 +29,7 @@ commands:
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
              headers, libraries, pkg-config file and CMake package into folder P
-  header     include/nekton.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
+  header     include/nekton.h, include/nekton32.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
 ";
 
 fn main() -> ExitCode {
