@@ -1,4 +1,6 @@
-//! What every command does at its end.
+//! How commands end, and how they speak.
+
+use std::io::Write;
 
 /// How a command ended that did not fail.
 pub enum Ending {
@@ -10,6 +12,5 @@ pub enum Ending {
 
 /// Prints to standard output; a reader that has gone away (`nekton … | head`) is no error.
 pub fn say(text: &str) {
-    use std::io::Write;
     let _ = writeln!(std::io::stdout(), "{text}");
 }

@@ -18,6 +18,7 @@ use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
 use measure::Bench;
 use reference::{Reference, Refusal};
+use setting::shown;
 pub use setting::{Setting, Variant, counts, method, method_name, parameter, unit};
 use study::{Measured, Status, Study, cheapest, front};
 use table::{Table, beside, mark};
@@ -154,10 +155,6 @@ fn report(
             None => say(&format!("for {error:.0e}: no setting that was tried is exact enough")),
         }
     }
-}
-
-fn shown(x: f64) -> String {
-    format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn method_text(setting: &Setting) -> String {

@@ -1,6 +1,6 @@
 //! A compiler for targets without an operating system.
 
-use crate::steps::{Outcome, output, root};
+use nekton_steps::{Outcome, output, root};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

@@ -2,8 +2,8 @@
 
 use crate::archive::SYMBOLS;
 use crate::dist::{install, soname};
-use crate::expected::{Lines, lines, numbers};
-use crate::steps::{Outcome, Steps, ask, read, require, root};
+use nekton_steps::{Outcome, Steps, ask, read, require, root};
+use nekton_tests::printed::{Lines, lines, numbers};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -75,10 +75,12 @@ pub fn add(steps: &mut Steps) {
     step(steps, "commands of examples-c/README.md", &[CC], readme_of_examples);
 }
 
-/// Both libraries offer the functions that the header declares, and nothing else.
+/// Both libraries offer the functions that the headers declare, and nothing else.
 fn symbols() -> Result<(), String> {
     let promised: BTreeSet<String> = read(&root().join(SYMBOLS))?.lines().map(str::to_string).collect();
-    let header = read(&prefix().join("include/nekton.h"))?;
+    let headers = ["nekton.h", "nekton32.h"].map(|name| read(&prefix().join("include").join(name)));
+    let [double, single] = headers;
+    let header = double? + &single?;
     // A name at the left of a parenthesis, not in a comment.
     let declared: BTreeSet<String> = header
         .lines()
@@ -92,7 +94,7 @@ fn symbols() -> Result<(), String> {
         Ok(listing.lines().filter_map(|line| Some(line.split_whitespace().nth(2)?.to_string())).collect())
     };
     let kinds = [
-        ("nekton.h", declared),
+        ("nekton.h with nekton32.h", declared),
         ("libnekton.so", offered(&["-D", "--defined-only"], "libnekton.so")?),
         ("libnekton.a", offered(&["-g", "--defined-only"], "libnekton.a")?),
     ];
@@ -261,7 +263,7 @@ fn wrapper(compiler: &str) -> Result<(), String> {
 
 /// Every function of the interface but those without an object has its place in the wrapper.
 fn wrapped() -> Result<(), String> {
-    let wrapper = read(&root().join("include/nekton.hpp"))?;
+    let wrapper = read(&root().join("include/nekton/api.hpp"))?;
     let symbols = read(&root().join(SYMBOLS))?;
     for name in symbols.lines().filter_map(|name| name.strip_prefix("nekton_")) {
         let free = ["abi_version", "capabilities", "status_text", "status_name", "diag_text"].contains(&name);

@@ -1,7 +1,7 @@
 //! Instructions of what is called again and again, counted by callgrind: the guard of speed that no other work disturbs.
 
-use crate::bench::{build, programs};
-use crate::steps::{Outcome, ask, read, require, root};
+use nekton_steps::bench::{build, programs};
+use nekton_steps::{Outcome, ask, read, require, root};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 

@@ -3,8 +3,8 @@
 use crate::bare::{CORTEX_M, Compiler, compiler, installed};
 use crate::c;
 use crate::firmware;
-use crate::steps::{Outcome, Steps, Wish, cargo, execute, require, root};
-use crate::trade;
+use crate::studies::studies;
+use nekton_steps::{Outcome, Steps, Wish, cargo, execute, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
@@ -45,7 +45,7 @@ pub fn run(wish: Wish) -> ExitCode {
     );
     c::add(&mut steps);
     scenes(&mut steps);
-    steps.run("speed against accuracy, quickly", trade::quick);
+    steps.command("speed against accuracy, quickly", &mut studies(&["trade", "--quick"]));
     steps.run("matlab (in octave)", matlab);
     steps.finish()
 }

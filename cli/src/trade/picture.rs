@@ -6,6 +6,7 @@ use crate::plots::log::{Curve, Marks, chart};
 use crate::plots::{Outcome, colour};
 
 use super::reference::Reference;
+use super::setting::shown;
 use super::study::{Measured, Status, front};
 
 /// Errors smaller than this are drawn at it.
@@ -48,7 +49,12 @@ pub fn draw(title: &str, rows: &[Measured], reference: &Reference) -> Outcome<St
         colour: RGBColor(150, 150, 150),
         marks: Marks::Level,
     });
-    chart(title, "time per simulated second (s/s)", "relative error", &curves)
+    chart(
+        &format!("{title}: error against time, to t = {} s", shown(reference.until)),
+        "time per simulated second (s/s)",
+        "relative error",
+        &curves,
+    )
 }
 
 fn method_index(name: &str) -> usize {

@@ -1,4 +1,6 @@
-//! Named, timed steps and the summary at the end.
+//! What the developers' commands share: named, timed steps and the summary at the end; other programs; the repository's folder.
+
+pub mod bench;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -6,6 +8,7 @@ use std::time::{Duration, Instant};
 
 /// How a step ended.
 pub enum Outcome {
+    /// As it should.
     Passed,
     /// What failed.
     Failed(String),
@@ -171,7 +174,7 @@ impl Steps {
 
 /// The repository's top folder.
 pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace").into()
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("xtask/steps lies in the workspace").into()
 }
 
 /// `cargo` with arguments, in the repository's top folder.

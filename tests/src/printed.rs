@@ -1,10 +1,10 @@
 //! What the examples in C and the README's program must print, computed by the library without the C interface: the same
 //! numbers to the last bit.
 
+use crate::{adams, body, hinged, link, simulation, wall};
 use nekton::scene::{Body, Drive, Harmonic, Link, Scene, Shape, Signal};
 use nekton::status::Result;
 use nekton::{Formulation, Method, Sim};
-use nekton_tests::{adams, body, hinged, link, simulation, wall};
 
 /// One line of output: the numbers in it.
 pub type Lines = Vec<Vec<f64>>;

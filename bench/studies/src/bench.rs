@@ -1,27 +1,14 @@
 //! `cargo xtask bench`: the comparison with LAPACK and with the paper's algorithm, and the guard of speed.
 
-use crate::firmware;
+use crate::page::Csv;
 use crate::speed::{self, TABLE};
-use crate::steps::{Outcome, ask, cargo, execute, output, read, require, root};
+use nekton_steps::bench::{build, programs};
+use nekton_steps::{Outcome, cargo, execute, output, read, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode, Stdio};
 
 /// Error against time of the paper's example.
-pub const PASSING: &str = "docs/bench/passing.csv";
-
-/// The benchmark program as usual, and built as for a machine of which nothing is known.
-pub fn programs() -> [PathBuf; 2] {
-    ["target", "target/portable"].map(|folder| root().join(folder).join("release/nekton-bench"))
-}
-
-/// Builds both.
-pub fn build() -> Result<(), String> {
-    let arguments = ["build", "--release", "--quiet", "--package", "nekton-bench", "--bins"];
-    ask(&mut cargo(&arguments))?;
-    let mut portable = cargo(&arguments);
-    portable.arg("--target-dir").arg(root().join("target/portable"));
-    ask(portable.env("RUSTFLAGS", "--cfg nekton_portable")).map(|_| ())
-}
+const PASSING: &str = "docs/bench/passing.csv";
 
 fn finish(done: Result<(), String>) -> ExitCode {
     match done {
@@ -90,25 +77,36 @@ fn how() -> String {
 
 /// Rows of the table, of counts instead of times.
 fn on_microcontrollers() -> String {
-    let counts = match firmware::counts() {
-        Ok(counts) => counts,
-        Err(why) => {
-            eprintln!("SKIPPED: counts on microcontrollers: {why}");
-            return String::new();
+    let rows = counts().and_then(|counts| {
+        let mut text = String::new();
+        for row in 0..counts.rows.len() {
+            let value = counts.number(row, "evaluation")? / 1e6;
+            let name = format!("{}: 10⁶ instructions of an evaluation", processor(&counts, row)?);
+            text += &format!("{name},48,{value:.3e},,,,,swimmer of 3 links of 16 nodes; QEMU\n");
         }
-    };
-    let mut text = String::new();
-    for c in &counts {
-        let value = c.evaluation / 1e6;
-        let name = format!("{} {}: 10⁶ instructions of an evaluation", c.processor, c.precision);
-        text += &format!("{name},48,{value:.3e},,,,,swimmer of 3 links of 16 nodes; QEMU\n");
-    }
-    for c in &counts {
-        let value = c.per_multiply_add;
-        let name = format!("{} {}: instructions per multiply-add of the LU", c.processor, c.precision);
-        text += &format!("{name},48,{value:.3e},5,3.5,,,QEMU\n");
-    }
-    text
+        for row in 0..counts.rows.len() {
+            let value = counts.number(row, "per_multiply_add")?;
+            let name = format!("{}: instructions per multiply-add of the LU", processor(&counts, row)?);
+            text += &format!("{name},48,{value:.3e},5,3.5,,,QEMU\n");
+        }
+        Ok(text)
+    });
+    rows.unwrap_or_else(|why| {
+        eprintln!("SKIPPED: counts on microcontrollers: {why}");
+        String::new()
+    })
+}
+
+/// Processor and precision.
+fn processor(counts: &Csv, row: usize) -> Result<String, String> {
+    Ok(format!("{} {}", counts.cell(row, "processor")?, counts.cell(row, "precision")?))
+}
+
+/// What the firmware's builder counts; what it prints of its progress comes before.
+fn counts() -> Result<Csv, String> {
+    let printed = listen(&mut cargo(&["xtask", "firmware", "--counts"]))?;
+    let table = printed.find("processor,precision,").and_then(|start| printed.get(start..)).ok_or("no table")?;
+    Ok(Csv::parse(table))
 }
 
 /// `cargo xtask bench-guard`: ratios that must hold.

@@ -1,8 +1,8 @@
 //! `cargo xtask extremes`: runs at the edges of what a scene may say, and the page that tells of them: its figures are those of
 //! the tables in docs/accuracy, its words stand in docs/accuracy/extremes.md.
 
-use crate::steps::{cargo, read, root};
-use crate::trade::{Csv, between};
+use crate::page::{Csv, between};
+use nekton_steps::{cargo, read, root};
 use std::process::ExitCode;
 
 type Result<T> = std::result::Result<T, String>;
@@ -77,10 +77,6 @@ fn errors() -> Result<String> {
 }
 
 fn row(csv: &Csv) -> Result<String> {
-    let number = |row: usize, name: &str| {
-        let text = csv.cell(row, name)?;
-        text.parse::<f64>().map_err(|_| format!("row {}: {name} is {text}", row + 1))
-    };
     let indicators = ["mass", "force", "quadrature", "repulsion"].map(|what| format!("indicator_{what}"));
     let (mut errors, mut space, mut refused) = (String::new(), String::new(), Vec::new());
     for precision in ["f64", "f32"] {
@@ -94,12 +90,12 @@ fn row(csv: &Csv) -> Result<String> {
                 refused.push(format!("`{precision}` {value}: `{status}`"));
                 continue;
             }
-            let error = number(k, "position_error_sizes")?;
+            let error = csv.number(k, "position_error_sizes")?;
             if error.is_nan() || error > worst.0 {
                 worst = (error, value.to_owned());
             }
             for name in &indicators {
-                indicated = indicated.max(number(k, name)?);
+                indicated = indicated.max(csv.number(k, name)?);
             }
         }
         errors += &format!(" {:.0e} | {} |", worst.0, worst.1);

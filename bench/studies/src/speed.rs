@@ -1,7 +1,7 @@
 //! Tables and plots of what `cargo xtask bench` has measured, between the markers of README.md and docs/design.md.
 
-use crate::steps::{Outcome, cargo, execute, read, root};
-use crate::trade::{Csv, between};
+use crate::page::{Csv, between};
+use nekton_steps::{Outcome, cargo, execute, read, root};
 use std::fs;
 
 /// Measured ratios.

@@ -1,7 +1,8 @@
 //! `cargo xtask trade`: measures speed against accuracy of every scene, computes the paper's figures anew, and fills the tables
 //! of docs/accuracy.md.
 
-use crate::steps::{Outcome, ask, cargo, execute, read, root};
+use crate::page::{Csv, between};
+use nekton_steps::{Outcome, ask, cargo, execute, read, root};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -204,34 +205,6 @@ fn trade(traded: &[PathBuf], work: &Path, folder: &Path, few: &[&str]) -> Result
     Ok(())
 }
 
-/// A table without quotes.
-pub struct Csv {
-    names: Vec<String>,
-    pub rows: Vec<Vec<String>>,
-}
-
-impl Csv {
-    pub fn parse(text: &str) -> Csv {
-        let cells = |line: &str| line.split(',').map(str::to_owned).collect();
-        let mut lines = text.lines();
-        Csv { names: lines.next().map(cells).unwrap_or_default(), rows: lines.map(cells).collect() }
-    }
-
-    pub fn cell(&self, row: usize, name: &str) -> Result<&str> {
-        let column = self.names.iter().position(|n| n == name).ok_or_else(|| format!("no column {name}"))?;
-        self.rows.get(row).and_then(|r| r.get(column)).map(String::as_str).ok_or_else(|| format!("no row {row}"))
-    }
-
-    /// What a row is about.
-    pub fn first(&self, row: usize) -> Result<&str> {
-        self.rows.get(row).and_then(|r| r.first()).map(String::as_str).ok_or_else(|| format!("no row {row}"))
-    }
-
-    fn column<'s>(&'s self, name: &'s str) -> impl Iterator<Item = &'s str> {
-        (0..self.rows.len()).filter_map(move |r| self.cell(r, name).ok())
-    }
-}
-
 /// Puts the tables of a folder between the page's markers. A table without data, or a marker without its end, is an error.
 fn fill(page: &str, folder: &Path) -> Result<String> {
     let csv = |file: &str| read(&folder.join(file)).map(|text| Csv::parse(&text));
@@ -253,14 +226,6 @@ fn fill(page: &str, folder: &Path) -> Result<String> {
         }
     }
     Ok(page)
-}
-
-/// Puts a table between a page's markers.
-pub fn between(page: &str, marker: &str, table: &str) -> Result<String> {
-    let (begin, end) = (format!("<!-- begin {marker} -->"), format!("<!-- end {marker} -->"));
-    let cut = page.split_once(&begin).and_then(|(head, rest)| Some((head, rest.split_once(&end)?.1)));
-    let (head, tail) = cut.ok_or_else(|| format!("no {begin} … {end}"))?;
-    Ok(format!("{head}{begin}\n{table}{end}{tail}"))
 }
 
 /// A number with two digits, as people write it.
