@@ -8,8 +8,8 @@ use crate::memory::{Owned, retire};
 use crate::shared::NEKTON_ALIGN as ALIGN;
 use crate::types::{ModelHandle, nekton_req};
 use core::mem::MaybeUninit;
-use nekton::boundary::BoundaryRecord;
-use nekton::model::{CoordinateRecord, LinkRecord};
+use nekton::BoundaryRecord;
+use nekton::{CoordinateRecord, LinkRecord};
 use nekton::{Model, ModelHead, ModelRequirement, Real, Status};
 
 const MODEL_MARK: u64 = 0x6e65_6b74_6f6e_4d30;

@@ -161,8 +161,7 @@ impl<R: Real> SimParts<'_, R> {
         let outcome = call(&mut sim);
         let time = sim.time().to_f64();
         outcome.map_err(|error| {
-            *self.head = *self.saved_head;
-            self.head.forget_evaluation();
+            self.head.put_back(self.saved_head);
             copy(self.reals, self.saved);
             Fault { time, ..Fault::from(error) }
         })
@@ -170,8 +169,7 @@ impl<R: Real> SimParts<'_, R> {
 
     /// Takes over what another simulation of the same model remembers.
     pub(crate) fn assign(&mut self, from: &Remembered<'_, R>) {
-        *self.head = *from.head;
-        self.head.forget_evaluation();
+        self.head.put_back(from.head);
         copy(self.reals, from.reals);
     }
 

@@ -2,7 +2,7 @@
 //! of a few lines, and nothing leaves this computer.
 
 use super::{made, script};
-use crate::steps::Outcome;
+use nekton_steps::Outcome;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

@@ -8,9 +8,9 @@ mod picture;
 #[cfg(test)]
 mod tests;
 
-use crate::steps::{Outcome, read, root};
 use imports::Sources;
 use list::{LAYERS, layer_of};
+use nekton_steps::{Outcome, read, root};
 use std::path::Path;
 use std::process::ExitCode;
 

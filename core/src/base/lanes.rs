@@ -1,5 +1,6 @@
 //! Sums over nodes in eight lanes, which compile to the machine's vectors.
 
+use crate::base::memory::copy_some;
 use crate::base::scalar::Real;
 
 /// Lanes of the sums over nodes.
@@ -23,7 +24,7 @@ pub(crate) fn sum_of<R: Real>([a, b, c, d, e, f, g, h]: [R; LANES]) -> R {
 pub(crate) fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
     from.first_chunk().copied().unwrap_or_else(|| {
         let mut lanes = [fill; LANES];
-        lanes.iter_mut().zip(from).for_each(|(lane, x)| *lane = *x);
+        copy_some(&mut lanes, from);
         lanes
     })
 }
@@ -33,6 +34,6 @@ pub(crate) fn lanes<R: Real>(from: &[R], fill: R) -> [R; LANES] {
 pub(crate) fn put_lanes<R: Real>(lanes: [R; LANES], to: &mut [R]) {
     match to.first_chunk_mut() {
         Some(to) => *to = lanes,
-        None => to.iter_mut().zip(lanes).for_each(|(x, lane)| *x = lane),
+        None => copy_some(to, &lanes),
     }
 }

@@ -57,13 +57,19 @@ pub(crate) fn add<R: Real>(data: &mut [R], i: usize, value: R) {
     }
 }
 
+/// Copies element by element, as far as both reach.
+#[inline]
+pub(crate) fn copy_some<T: Copy>(to: &mut [T], from: &[T]) {
+    for (t, f) in to.iter_mut().zip(from) {
+        *t = *f;
+    }
+}
+
 /// Copies element by element; both have the same length.
 #[inline]
 pub(crate) fn copy<T: Copy>(to: &mut [T], from: &[T]) {
     debug_assert_eq!(to.len(), from.len());
-    for (t, f) in to.iter_mut().zip(from) {
-        *t = *f;
-    }
+    copy_some(to, from);
 }
 
 /// Scalar product, summed in eight lanes so that it vectorizes.

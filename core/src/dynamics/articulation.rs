@@ -165,7 +165,9 @@ pub(crate) fn set_coordinates<R: Real>(
             let [u, du, ddu] = c.signal.evaluate(t, model.store, channels);
             (*s, *ds, *dds) = (if c.component < 3 { c.base + u } else { u }, du, ddu);
         } else {
-            (*s, *ds, *dds) = (at(p, c.free), at(dp, c.free), R::zero());
+            // Rates may be unknown.
+            let rate = dp.get(c.free).copied().unwrap_or(R::NAN);
+            (*s, *ds, *dds) = (at(p, c.free), rate, R::zero());
         }
     }
 }

@@ -51,7 +51,9 @@ pub(crate) fn fill_walls<R: Real>(
                 for (i, z) in targets(&points, target.pose, b.pose).enumerate() {
                     let w = dx / (x - z) * (source.nodes.step * factor);
                     put(a.data, at + k * n + i, -w.im);
-                    put(g.data, at + k * n + i, w.re);
+                    if let Some(g) = g.data.get_mut(at + k * n + i) {
+                        *g = w.re;
+                    }
                 }
             }
             if !features::NEAR || source.table.is_empty() {

@@ -11,7 +11,7 @@
 
 use crate::base::complex::{Complex, complex};
 use crate::base::machine::{Machine, Task};
-use crate::base::memory::{copy, part};
+use crate::base::memory::{copy_some, part};
 use crate::base::scalar::Real;
 use crate::fluid::near::buffers::Preimage;
 
@@ -63,7 +63,7 @@ pub(super) fn load<R: Real>(data: &[R], from: usize, fill: R) -> [R; LANES] {
     let rest = data.get(from..).unwrap_or(&[]);
     rest.first_chunk().copied().unwrap_or_else(|| {
         let mut lanes = [fill; LANES];
-        copy(&mut lanes, rest);
+        copy_some(&mut lanes, rest);
         lanes
     })
 }
@@ -205,7 +205,7 @@ pub(crate) fn slope_products<R: Real>(
         }
         match out.first_chunk_mut() {
             Some(out) => *out = sum,
-            None => copy(out, &sum),
+            None => copy_some(out, &sum),
         }
     }
     factor * total(&sums)
