@@ -4,25 +4,6 @@
 
 use std::time::Instant;
 
-/// What came out.
-pub struct Measured {
-    /// Seconds.
-    pub time: f64,
-    /// Seconds that it is divided by; 1 if the time itself is meant.
-    pub by: f64,
-    /// The value that `must` and `aim` speak of: the median of the ratios, or the time itself.
-    pub ratio: f64,
-    /// What else is worth knowing.
-    pub note: String,
-}
-
-impl Measured {
-    /// A time that is not divided by another.
-    pub fn seconds(time: f64, note: String) -> Self {
-        Measured { time, by: 1.0, ratio: time, note }
-    }
-}
-
 /// Median of some numbers.
 pub fn median(mut x: Vec<f64>) -> f64 {
     x.sort_by(f64::total_cmp);

@@ -20,8 +20,6 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use ending::Ending;
 
-use ending::Ending;
-
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
