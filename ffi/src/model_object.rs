@@ -131,8 +131,8 @@ impl<R: Real> ModelParts<'_, R> {
         for x in m.reals.iter() {
             add(x.to_f64().to_bits());
         }
-        for l in m.links.iter() {
-            for x in [l.mass, l.inertia, l.area, l.centroid.re, l.centroid.im] {
+        for l in (0..model.link_count()).filter_map(|i| model.link(i)) {
+            for x in [l.mass, l.inertia, l.area, l.centroid[0], l.centroid[1]] {
                 add(x.to_f64().to_bits());
             }
         }

@@ -41,46 +41,46 @@ pub(crate) struct Slots {
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryRecord<R> {
     /// Where it stands in the scene.
-    pub place: Place,
+    pub(crate) place: Place,
     /// Link that carries it; `None` for a wall.
-    pub link: Option<usize>,
+    pub(crate) link: Option<usize>,
     /// −1 for links and obstacles, +1 for the tank.
-    pub sign: R,
+    pub(crate) sign: R,
     /// Number of nodes.
-    pub nodes: usize,
+    pub(crate) nodes: usize,
     /// First unknown.
-    pub first: usize,
+    pub(crate) first: usize,
     /// Compiled shape.
-    pub outline: Outline<R>,
+    pub(crate) outline: Outline<R>,
     /// Where its numbers are in the store.
     pub(crate) slots: Slots,
     /// Origin of the boundary's frame in the shape's drawing frame.
-    pub origin: Complex<R>,
+    pub(crate) origin: Complex<R>,
     /// Number of permanent ladders.
-    pub ladders: usize,
+    pub(crate) ladders: usize,
     /// Number of tips and corners.
-    pub tips: usize,
+    pub(crate) tips: usize,
     /// Circulation.
-    pub circulation: R,
+    pub(crate) circulation: R,
     /// Its isolated circulatory flow.
-    pub core: Core<R>,
+    pub(crate) core: Core<R>,
     /// Placement of a wall.
-    pub pose: Pose<R>,
+    pub(crate) pose: Pose<R>,
     /// Greatest distance of the outline from the frame's origin.
-    pub reach: R,
+    pub(crate) reach: R,
     /// Greatest distance between neighbouring nodes.
-    pub spacing: R,
+    pub(crate) spacing: R,
     /// What set-up noticed.
-    pub notice: Status,
+    pub(crate) notice: Status,
 }
 
 /// Isolated circulatory flow of one boundary, analytic outside: log z' about a point, or log W of an ellipse.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Core<R> {
+pub(crate) struct Core<R> {
     /// Origin of z' in the boundary's frame.
-    pub centre: Complex<R>,
+    pub(crate) centre: Complex<R>,
     /// Semi-axes of an ellipse; (0, 0) for a point vortex.
-    pub axes: [R; 2],
+    pub(crate) axes: [R; 2],
 }
 
 impl<R: Real> Default for BoundaryRecord<R> {

@@ -22,28 +22,28 @@ use crate::scene::{ForceFormula, Repulsion};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LinkRecord<R> {
     /// Body and link within the body.
-    pub place: (usize, usize),
+    pub(crate) place: (usize, usize),
     /// Parent among all links; itself for a root.
-    pub parent: usize,
+    pub(crate) parent: usize,
     /// First coordinate: the root's three, or the joint's one.
-    pub coordinate: usize,
+    pub(crate) coordinate: usize,
     /// How it hangs on its parent.
-    pub hold: Hold<R>,
+    pub(crate) hold: Hold<R>,
     /// Mass, kg/m.
-    pub mass: R,
+    pub(crate) mass: R,
     /// Moment of inertia about the centre of mass, kg·m.
-    pub inertia: R,
+    pub(crate) inertia: R,
     /// Area, m².
-    pub area: R,
+    pub(crate) area: R,
     /// Perimeter, m.
-    pub perimeter: R,
+    pub(crate) perimeter: R,
     /// Area centroid minus centre of mass, link frame.
-    pub centroid: Complex<R>,
+    pub(crate) centroid: Complex<R>,
 }
 
 /// Attachment of a link. Vectors are in centre-of-mass frames.
 #[derive(Clone, Copy, Debug, Default)]
-pub enum Hold<R> {
+pub(crate) enum Hold<R> {
     /// First link of its body.
     #[default]
     Root,
@@ -69,7 +69,7 @@ pub enum Hold<R> {
 
 /// What determines a coordinate.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
-pub enum Control {
+pub(crate) enum Control {
     /// The laws of motion.
     #[default]
     Free,
@@ -83,27 +83,27 @@ pub enum Control {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CoordinateRecord<R> {
     /// Link it moves.
-    pub link: usize,
+    pub(crate) link: usize,
     /// 0, 1, 2 for a root's x, y, θ; 3 for a joint.
-    pub component: usize,
+    pub(crate) component: usize,
     /// What determines it.
-    pub control: Control,
+    pub(crate) control: Control,
     /// Index among the free coordinates (unless prescribed).
-    pub free: usize,
+    pub(crate) free: usize,
     /// Prescribed value or applied torque.
-    pub signal: SignalRecord<R>,
+    pub(crate) signal: SignalRecord<R>,
     /// Prescribed and constant, or never driven.
-    pub constant: bool,
+    pub(crate) constant: bool,
     /// Added to a prescribed value.
-    pub base: R,
+    pub(crate) base: R,
     /// Spring constant.
-    pub stiffness: R,
+    pub(crate) stiffness: R,
     /// Damping constant.
-    pub damping: R,
+    pub(crate) damping: R,
     /// Unloaded spring.
-    pub rest: R,
+    pub(crate) rest: R,
     /// Value and rate at the start, if free.
-    pub start: [R; 2],
+    pub(crate) start: [R; 2],
     /// Which of the three reals of all links it moves: the first, and how many from there on.
     pub(crate) moves: (usize, usize),
 }

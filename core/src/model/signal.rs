@@ -7,7 +7,7 @@ use crate::scene::{Signal, Window};
 
 /// A signal compiled into a model: numbers live in the model's store.
 #[derive(Clone, Copy, Debug)]
-pub struct SignalRecord<R> {
+pub(crate) struct SignalRecord<R> {
     kind: Kind<R>,
     at: usize,
     len: usize,

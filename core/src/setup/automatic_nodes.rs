@@ -41,7 +41,7 @@ pub(crate) fn check<R: Real>(asked: Option<R>) -> Result<()> {
 /// Nodes that an outline needs for a relative error `tolerance` of added mass and force: by itself, and beside others at gaps
 /// of half its size ([`Quadrature::Plain`]) or a hundredth ([`Quadrature::Graded`]). Fitted to measured errors; a multiple of 4,
 /// at most [`MOST`].
-pub fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Quadrature) -> usize {
+pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Quadrature) -> usize {
     let digits = -Real::ln(tolerance.to_f64().clamp(1e-15, 0.1)) / core::f64::consts::LN_10;
     let plain = quadrature == Quadrature::Plain;
     let neighbours = if plain { 6.0 * digits } else { 12.0 + 5.0 * digits };
@@ -83,7 +83,7 @@ pub fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Quadrature
 }
 
 /// Most nodes that are chosen automatically for one boundary.
-pub const MOST: usize = 1024;
+pub(crate) const MOST: usize = 1024;
 
 /// Nodes for one corner of a radius relative to the shortest side.
 fn corner(digits: f64, radius: f64) -> f64 {

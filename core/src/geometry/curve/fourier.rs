@@ -15,16 +15,6 @@ pub struct Fourier<'a, R> {
 }
 
 impl<'a, R: Real> Fourier<'a, R> {
-    /// Number of modes.
-    pub fn len(&self) -> usize {
-        self.coefficients.len() / 2
-    }
-
-    /// Has no modes.
-    pub fn is_empty(&self) -> bool {
-        self.coefficients.is_empty()
-    }
-
     /// Mode numbers and coefficients.
     pub fn modes(&self) -> impl Iterator<Item = (R, Complex<R>)> + 'a {
         let (centre, stride, down) = (self.centre, self.stride, R::count(self.down));

@@ -162,7 +162,7 @@ impl<R: Real> Shape<'_, R> {
 
     /// Reals that the compiled outline occupies. Depends on the shape only. Errors: `SizeOverflow`; `OutOfRange`
     /// for a corner radius that is not positive.
-    pub fn store_len(&self) -> Result<usize> {
+    pub(crate) fn store_len(&self) -> Result<usize> {
         let sizes = self.sizes()?;
         let graded = grading_len(sizes.rungs).and_then(|n| n.checked_add(sizes.own));
         graded.filter(|n| *n < usize::MAX / 64).ok_or(Status::SizeOverflow.into())
@@ -170,7 +170,7 @@ impl<R: Real> Shape<'_, R> {
 
     /// Reals needed while compiling: about n² + 100 n for a curve through n points, 130 per corner, else none.
     /// Depends on the shape only. Errors as for [`store_len`](Self::store_len).
-    pub fn scratch_len(&self) -> Result<usize> {
+    pub(crate) fn scratch_len(&self) -> Result<usize> {
         let scratch = self.sizes()?.scratch;
         if scratch < usize::MAX / 64 { Ok(scratch) } else { Err(Status::SizeOverflow.into()) }
     }
@@ -189,7 +189,7 @@ impl<R: Real> Shape<'_, R> {
     /// `SelfIntersection`; `MemoryTooSmall`.
     ///
     /// Cost: O(1) for ellipses, O(corners² rungs) for polygons, O(points³) for curves.
-    pub fn compile(&self, store: &mut [R], scratch: &mut [R]) -> Result<(Outline<R>, Status)> {
+    pub(crate) fn compile(&self, store: &mut [R], scratch: &mut [R]) -> Result<(Outline<R>, Status)> {
         self.validate()?;
         let sizes = self.sizes()?;
         if store.len() < self.store_len()? || scratch.len() < self.scratch_len()? {

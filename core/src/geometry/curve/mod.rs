@@ -171,6 +171,7 @@ pub struct OutlineView<'a, R> {
 
 impl<R: Real> OutlineView<'_, R> {
     /// The point at parameter t with its derivatives in s: dx/ds = γ′/s′, d²x/ds² = γ″/s′² − γ′ s″/s′³.
+    #[cfg(test)]
     pub fn node_at(&self, t: R) -> Node<R> {
         let [_, slope, bend] = self.grading.jet(t);
         self.node_of([t, slope, bend])
@@ -185,6 +186,7 @@ impl<R: Real> OutlineView<'_, R> {
 
     /// Node `k` of `n`, at s = 2πk/n. Errors: `OutOfRange` unless k < n, `Internal` when the parameter could not
     /// be found to rounding. Cost: some ten evaluations of the grading, one of the curve.
+    #[cfg(test)]
     pub fn node(&self, k: usize, n: usize) -> Result<Node<R>> {
         Ok(self.node_at(self.grading.node(k, n)?))
     }
@@ -195,7 +197,7 @@ impl<R: Real> OutlineView<'_, R> {
     }
 
     /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule in s, exact to
-    /// rounding; closed form for ellipses. Errors: `Internal` as for [`node`](Self::node).
+    /// rounding; closed form for ellipses. Errors: `Internal` as for the nodes.
     pub fn properties(&self) -> Result<AreaProperties<R>> {
         let modes = match &self.curve {
             Curve::Ellipse(ellipse) => return Ok(ellipse.properties()),

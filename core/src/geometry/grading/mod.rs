@@ -221,6 +221,7 @@ impl<'a, R: Real> Grading<'a, R> {
 
     /// Parameter of node `k` of `n`: s = 2πk/n. Errors: `OutOfRange` unless k < n, `Internal` as in
     /// [`inverse`](Self::inverse).
+    #[cfg(test)]
     pub fn node(&self, k: usize, n: usize) -> Result<R> {
         if k >= n {
             return Err(Error::new(Status::OutOfRange).of("node", k as f64));
