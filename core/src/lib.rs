@@ -3,10 +3,7 @@
 //! Rigid and articulated bodies moving in a 2D ideal fluid: unbounded, with obstacles, or in a tank; with buoyancy,
 //! circulation, and repulsion on near-contact.
 //!
-//! A [`scene::Scene`] is compiled into an immutable [`Model`]; any number of [`Sim`]s step it, one per thread. With the
-//! feature `alloc` (in `std`, on by default) [`ModelBuf`] and [`SimBuf`] own their memory; without it the caller gives
-//! slices of the lengths that [`Model::requirement`] and [`Sim::requirement`] name. Stepping allocates nothing, locks
-//! nothing, prints nothing and does not panic.
+//! # A first run
 //!
 //! ```
 //! use nekton::scene::{Body, Link, Mass, Root, Scene, Shape};
@@ -33,25 +30,98 @@
 //! # Ok::<(), nekton::Error>(())
 //! ```
 //!
-//! Modules in the order of the data: [`scene`] → [`curve`], [`grading`], [`boundary`] → [`compile`] ([`model`], [`plan`]) →
-//! the boundary system ([`lu`]) → forces → [`sim`] with the integrators of [`integrate`] → [`diagnostics`].
-//! Units are SI per unit depth; angles are in radians.
+//! Units are SI per metre of depth: kg/m, kg·m, N/m, J/m; angles are in radians, counter-clockwise. The formulas are numbered as
+//! in docs/physics.md of the repository, which is the paper of A. Munnier and B. Pinçon with its errata.
+//!
+//! # From a scene to numbers
+//!
+//! 1. **Describe.** [`scene`]: a [`Scene`](scene::Scene) is plain, borrowed data: fluid, gravity, repulsion, circulation, tank,
+//!    obstacles, and bodies of links with joints. An interface that has scenes of its own implements
+//!    [`Description`](scene::Description) instead.
+//! 2. **Compile.** [`ModelBuf::new`], or [`Model::init`] in the caller's memory, checks the scene and makes an immutable
+//!    [`Model`]: outlines, nodes, what rigid motion leaves unchanged. [`ModelBuf::resolved`] also looks whether automatic node counts
+//!    meet the scene's tolerance. [`Model::plan`] tells what will be computed and what that costs.
+//! 3. **Step.** [`SimBuf::new`], or [`Sim::init`], begins a [`Sim`] with one [`Method`]: [`Sim::advance`] to a time, [`Sim::advance_dense`] for
+//!    output at many times, [`Sim::step`] for one step; [`Sim::set_state`] and [`Sim::set_channel`] from outside; [`Sim::rhs`] for an
+//!    integrator of your own. One model serves any number of simulations, one per thread.
+//! 4. **Ask**, between steps. Vectors have 3 numbers per link (x, y, θ, or force along x, y and torque about the centre of
+//!    mass), matrices are 3n × 3n, column by column:
+//!
+//!    | to know | ask | formula |
+//!    |---|---|---|
+//!    | where everything is and how it moves | [`Sim::positions`], [`Sim::velocities`], [`Sim::joint_values`], [`Sim::accelerations`] | (6.3) |
+//!    | energies, impulse, the smallest gap | [`Sim::energy`], [`Sim::impulse`], [`Sim::gap`] | |
+//!    | added mass, mass matrix | [`Sim::added_mass`], [`Sim::mass_matrix`] | (2.11) |
+//!    | the inertial force of a changing mass matrix | [`Sim::christoffel`], [`Sim::christoffel_tensor`] | (2.15) |
+//!    | weight and buoyancy | [`Sim::buoyancy`] | (2.8), (2.16) |
+//!    | repulsion | [`Sim::repulsion`] | (5.1) |
+//!    | circulation: energy gradient, lift | [`Sim::circulation_gradient`], [`Sim::gyroscopic`] | section 3 |
+//!    | torques and powers of the joints | [`Sim::joint_torques`] | (7.2) |
+//! 5. **Trust.** Of space: [`Sim::indicators`] of the steps and [`Sim::resolution`] of the state shown, each a [`Resolution`]. Of
+//!    time: [`Sim::time_error`]. What exceeds the scene's tolerance: [`Sim::notice`].
+//!
+//! Every failure is an [`Error`]: a [`Status`], the [`Place`] in the scene, the quantity's name and value. A call that fails leaves the
+//! simulation as it was.
+//!
+//! # Memory
+//!
+//! With the feature `alloc` [`ModelBuf`] and [`SimBuf`] own their memory; without it the caller gives slices of the lengths that
+//! [`Model::requirement`] and [`Sim::requirement`] name. The records in [`ModelMemory`] are opaque. Stepping allocates nothing,
+//! locks nothing, prints nothing and does not panic.
+//!
+//! # Pieces that serve by themselves
+//!
+//! [`integrate`]: the integrators, for any y′ = f(t, y); [`lu`]: the factorization, in the caller's memory; [`scalar`]: what both are
+//! generic over, `f32` and `f64`.
+//!
+//! # Features
+//!
+//! * `std` (default): `alloc`, `implicit`, `near`, and instructions of the processor chosen while running.
+//! * `alloc`: [`ModelBuf`] and [`SimBuf`].
+//! * `implicit`: [`Method::Gauss6`]. `near`: graded quadrature, [`Quadrature::Graded`](scene::Quadrature::Graded). Without them a program for a microcontroller is smaller.
+//! * `fft`: rustfft for the set-up of large outlines.
+//!
+#![cfg_attr(
+    not(feature = "alloc"),
+    doc = "[`ModelBuf`]: #features\n[`ModelBuf::new`]: #features\n[`ModelBuf::resolved`]: #features\n[`SimBuf`]: #features\n[`SimBuf::new`]: #features"
+)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
+// The layers, from the ground up; each uses itself and those before it (docs/architecture.md).
+
+// Scalars, complex numbers, errors, memory of the caller, the processor's vectors.
 mod base;
-mod dynamics;
-mod fluid;
-mod geometry;
-pub mod integrate;
+
+// Dense linear systems: LU with partial pivoting, L D Lᵀ of mass matrices.
 mod linear;
-mod model;
+
+// What the caller describes.
 pub mod scene;
-mod setup;
+
+// Integrators of any y′ = f(t, y).
+pub mod integrate;
+
+// One outline or one pose: curves, placement of nodes, rigid placements.
+mod geometry;
+
+// What set-up makes: immutable records, and the plan.
+mod model;
+
+// The boundary integral equation (8.2) and its quadrature, near and far; gaps.
+mod fluid;
+
+// From positions and velocities to accelerations: kinematics, added mass, forces.
+mod dynamics;
+
+// Steps in time, and what can be asked between them.
 mod simulation;
+
+// From a scene to a model: checks, node counts, layout of the memory, filling it.
+mod setup;
 
 pub use base::{scalar, status};
 pub use linear::lu;
@@ -67,10 +137,12 @@ pub use fluid::contact::Gap;
 pub use model::boundary::BoundaryRecord;
 pub use model::plan::{Formulation, Plan};
 pub use model::{CoordinateRecord, JointInfo, LinkInfo, LinkRecord, Model, ModelHead};
+pub use setup::automatic_nodes::DEFAULT_TOLERANCE;
 pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};
 pub use simulation::diagnostics::Energy;
+pub use simulation::notices::STEP_ERROR_LIMIT;
 pub use simulation::sim::{STEP_LIMIT, Sim, SimHead, SimRequirement};
 pub use simulation::state::Method;
 pub use simulation::time_error::TimeError;

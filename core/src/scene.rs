@@ -28,7 +28,7 @@ pub struct Scene<'a, R> {
     /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
     pub quadrature: Quadrature,
     /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes (`None`:
-    /// [`DEFAULT_TOLERANCE`](crate::setup::automatic_nodes::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
+    /// [`DEFAULT_TOLERANCE`](crate::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
     pub tolerance: Option<R>,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
@@ -133,7 +133,7 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`], `ModelBuf::resolved`).
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -168,7 +168,7 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`], `ModelBuf::resolved`).
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,

@@ -1,10 +1,10 @@
 //! Integrators of ordinary differential equations `y' = f(t, y)` in memory given by the caller.
 //!
-//! - [`rk4`]: the classical Runge–Kutta step of order 4, fixed step, four evaluations.
-//! - [`abm4`]: Adams–Bashforth–Moulton of order 4, fixed step, two evaluations.
-//! - [`adams`]: Adams–Bashforth–Moulton of variable step and order 1–12 (the method of Matlab's
+//! - [`Rk4`]: the classical Runge–Kutta step of order 4, fixed step, four evaluations.
+//! - [`Abm4`]: Adams–Bashforth–Moulton of order 4, fixed step, two evaluations.
+//! - [`Adams`]: Adams–Bashforth–Moulton of variable step and order 1–12 (the method of Matlab's
 //!   `ode113`), with error control and dense output, two evaluations.
-//! - [`gauss6`]: the implicit Runge–Kutta method of Gauss and Legendre of order 6, fixed step, symmetric in
+//! - [`Gauss6`]: the implicit Runge–Kutta method of Gauss and Legendre of order 6, fixed step, symmetric in
 //!   time, 20 to 40 evaluations.
 //!
 //! Every method sums the state with compensation, so that many short steps do not add up their rounding.

@@ -30,7 +30,7 @@ impl<R: Real> Sim<'_, R> {
 
     /// What is to be noticed of the last call of [`Sim::step`] or [`Sim::advance`], and when it was worst; `None` if there is
     /// nothing.
-    /// * `StepTooLong`: the estimated error of a step was [`STEP_ERROR_LIMIT`] or more reaches of a link, or radians; the motion is no longer
+    /// * `StepTooLong`: the estimated error of a step was [`STEP_ERROR_LIMIT`](crate::STEP_ERROR_LIMIT) or more reaches of a link, or radians; the motion is no longer
     ///   that of the scene. (`gauss6` has no estimate: its stages are not found then.)
     /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
     ///   error and the boundaries that are now closest to each other. Never if none was asked for. O(N²) for that gap.
