@@ -1,4 +1,7 @@
 //! Points and vectors of the plane as complex numbers, and the few complex functions the numerics need.
+//!
+//! Tested by `geometry/curve/tests.rs` (complex arguments),
+//! `base/elementary.rs:complex_functions_agree_with_the_complex_modules`.
 
 use crate::base::scalar::Real;
 

@@ -1,6 +1,8 @@
 //! Elementary functions without branches, calls and tables: a loop over many arguments compiles to vector instructions.
 //!
 //! They serve where nodes are placed and their preimages found. Within two units in the last place; arguments are finite.
+//!
+//! Tested by the tests at its end, against libm.
 
 use crate::base::scalar::Real;
 

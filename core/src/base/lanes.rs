@@ -1,4 +1,6 @@
 //! Sums over nodes in eight lanes, which compile to the machine's vectors.
+//!
+//! Tested by `tests/gradients`, whose forces are such sums.
 
 use crate::base::memory::copy_some;
 use crate::base::scalar::Real;

@@ -1,7 +1,9 @@
 //! Memory given by the caller: one run of a layout counts, the same run splits.
 //!
 //! Nothing in this crate allocates while it computes. A layout is written once with [`buffers!`]; its
-//! `len` and its `split` come from the same lines and cannot disagree.
+//! `len` and its `take` come from the same lines and cannot disagree.
+//!
+//! Tested by `tests/allocation`.
 
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};

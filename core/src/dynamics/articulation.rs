@@ -1,7 +1,10 @@
-//! q = F(p, u): link placements, velocities and accelerations from the coordinates of a tree of links.
+//! q = F(p, u): link placements, velocities and accelerations from the coordinates of a tree of links (section 6
+//! of the paper).
 //!
 //! Per link (x, y, θ) of the centre of mass. Hinge: r_c + R_c h_c = r_p + R_p h_p, θ_c = θ_p + u. Slider:
 //! r_c + R_c h_c = r_p + R_p (h_p + u a), θ_c = θ_p + angle. Every routine walks the links once: O(links).
+//!
+//! Tested by `tests/articulated`, `tests/conservation`.
 
 use crate::base::complex::{Complex, cis, complex, perp};
 use crate::base::memory::{at, part_mut, put};

@@ -1,4 +1,4 @@
-//! The Christoffel force as the exact gradient of the discrete added mass, and the paper's (2.15) beside it.
+//! The Christoffel force (2.15) as the exact gradient of the discrete added mass, and the paper's boundary formula beside it.
 //!
 //! With v the velocity, A u = −2 X v and Aᵀ λ = B v, the derivative of the discrete added mass along any motion of
 //! the boundaries is vᵀ dM_h v = λᵀ Im(dG) u: only the blocks between different boundaries contribute, through
@@ -6,6 +6,8 @@
 //! g_a = q̇ᵀ (∂M/∂q_a) q̇. Then F = (T₁ + T₂)/2 + J p − M J q̇ − g/2 with T₁ = Bᵀ A⁻¹ a, T₂ = −2 Xᵀ A⁻ᵀ l,
 //! l = Im((λ ż)ᵀ D) from the same pass, p = M q̇, (J v)_i = ω_i (−v_y, v_x, 0). Either half alone delivers the discrete
 //! power; their mean is the derivative of the symmetrized M and so delivers the discrete impulse too.
+//!
+//! Tested by `tests/gradients`, `tests/conservation`.
 
 use crate::base::complex::{Complex, cabs, complex, dot, perp};
 use crate::base::memory::{copy, part, part_mut};

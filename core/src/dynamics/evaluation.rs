@@ -4,6 +4,8 @@
 //! Shapes: n links, b boundaries, c coordinates of which p are free, N unknowns of the boundary system, k columns: the p free
 //! coordinates and, if prescribed ones move, their common motion. Three reals of a link are x, y, θ (velocities ẋ, ẏ, θ̇;
 //! forces fx, fy, torque about the centre of mass), *world* or *link*: directions of its linear part.
+//!
+//! Tested by `tests/walls.rs:an_evaluation_between_walls_depends_on_its_state_alone`, `tests/driving`, `tests/allocation`.
 
 use crate::base::memory::buffers;
 use crate::base::scalar::Real;

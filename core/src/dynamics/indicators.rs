@@ -4,6 +4,8 @@
 //! where a configuration mirrors itself they vanish whatever the error. What symmetry does not hide is how well the
 //! boundary system reproduces the one solution that is known exactly, the constant density: A 1 = 2 on bodies and
 //! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve.
+//!
+//! Tested by `tests/indicators`, `tests/near_contact`.
 
 use crate::base::memory::{axpy, part, part_mut};
 use crate::base::scalar::Real;

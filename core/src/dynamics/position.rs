@@ -1,4 +1,6 @@
 //! The part of an evaluation that depends on the position: coordinates, placements, nodes of this configuration, motions to solve for.
+//!
+//! Tested by `tests/driving`, `tests/articulated`, `tests/walls`.
 
 use crate::base::memory::part_mut;
 use crate::base::scalar::Real;

@@ -1,4 +1,6 @@
 //! Natural sizes of forces, by which errors are measured.
+//!
+//! Tested by `tests/indicators`, above all by independence of the unit of length.
 
 use crate::base::memory::inner;
 use crate::base::scalar::Real;

@@ -1,9 +1,11 @@
-//! The boundary system in density form: A u = −2χ with A = I − Im G, and the weights that pairs of boundaries add.
+//! The boundary system (8.2) in density form: A u = −2χ with A = I − Im G, and the weights that pairs of boundaries add.
 //!
 //! For target z and source node Γ_k of boundary j (both in j's frame) G_ik = (sign_j/π) h Γ'_k/(Γ_k − z_i).
 //! n points out of the fluid. On the tank A also carries 1/N_T in every entry, which fixes the mean of u over the
 //! tank's nodes to 0. Blocks of a boundary with itself and of walls with walls come ready from the model; only
 //! blocks between different boundaries of which one moves are computed: one division per pair of nodes.
+//!
+//! Tested by `fluid/assembly_test.rs` (identities of potential theory), `tests/gradients`, `tests/walls`.
 
 use crate::base::complex::{Complex, complex};
 use crate::base::features;

@@ -1,4 +1,6 @@
 //! Which boundaries of a scene touch: the smallest gap, overlap, misplacement, and motion that could have jumped across.
+//!
+//! Tested by `tests/bad_input`, `tests/driving`, `tests/extremes`.
 
 use crate::base::complex::{cabs, cis};
 use crate::base::memory::{at, copy};

@@ -1,7 +1,10 @@
-//! One pass over all pairs of boundaries: what the density of the motion induces at the other boundaries, and the transpose.
+//! One pass over all pairs of boundaries: what the density of the motion induces at the other boundaries, and the
+//! transpose. Of these the exact gradient of the added mass is made, the force (2.15).
 //!
 //! Both directions of a pair need 1/(Γ − z)² of the same differences, up to the turn between the two frames: unless there are pole
 //! terms, a pair is visited once, with one division per pair of nodes.
+//!
+//! Tested by `tests/gradients` (differences), `tests/conservation`, `tests/near_contact`.
 
 use crate::base::complex::{Complex, complex};
 use crate::base::features;

@@ -1,9 +1,12 @@
-//! Elementary potentials of rigid motion and their fluxes on the links, and the small vectors that surround them.
+//! Elementary potentials of rigid motion (2.6) and their fluxes on the links, and the small vectors that surround them.
 //!
 //! Per link and per unit density of the fluid, in the link's frame: X = (x, y, χ₃) are the potentials of rigid motion
 //! inside, B = h (−y', x', x x' + y y') the fluxes b ds. A u = −2 X v gives the density of the motion v, and
 //! ψ = u + X v its potential on the boundary. The added mass is Bᵀ ψ; its transpose costs no further solve of
 //! its own: M_hᵀ v = Xᵀ (B v − 2 λ) with Aᵀ λ = B v.
+//!
+//! Tested by `fluid/assembly_test.rs:density_form_gives_the_potential_of_the_direct_formulation`, `tests/reference_values`,
+//! `tests/gradients`.
 
 use crate::base::complex::{Complex, complex, dot};
 use crate::base::memory::{part, part_mut};

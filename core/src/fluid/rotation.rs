@@ -1,5 +1,7 @@
-//! χ₃, the interior potential of rotation at the nodes of a link: harmonic inside the outline, its normal derivative that of
+//! χ₃, the interior potential of rotation for (2.6) at the nodes of a link: harmonic inside the outline, its normal derivative that of
 //! the rotation about the frame's origin. Once, at set-up.
+//!
+//! Tested by `fluid/assembly_test.rs:density_form_gives_the_potential_of_the_direct_formulation`, `tests/near_contact`.
 
 use crate::base::complex::{Complex, cis, complex, dot};
 use crate::base::features;

@@ -1,9 +1,11 @@
-//! What rigid motion leaves unchanged of the matrix: the block of a boundary with itself, and pole terms in any block.
+//! What rigid motion leaves unchanged of the matrix: the block of a boundary with itself (8.2), and pole terms in any block.
 //!
 //! With n out of the fluid and G = (sign/π) W, W_ik ≈ ∫ ds Γ'/(Γ − z_i): sign = −1 on links and obstacles, +1 on
 //! the tank. The matrix is A = I − Im G. On one boundary W is a principal value:
 //! W_ik = h Γ'_k/(Γ_k − Γ_i) − (−1)^(k−i) (h/2) cot((s_k − s_i)/2), W_ii = h Γ''_i/(2Γ'_i); the cotangent is real
 //! and matters only for Re G.
+//!
+//! Tested by `fluid/assembly_test.rs`, `tests/near_contact.rs:thin_and_cornered_bodies_alone_need_few_nodes`.
 
 use crate::base::complex::{Complex, complex};
 use crate::base::features;

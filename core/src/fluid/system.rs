@@ -1,4 +1,4 @@
-//! The boundary system of one configuration in density form, A u = −2 X v: assembled, factorized, solved; and what its solutions
+//! The boundary system of one configuration in density form, A u = −2 X v (8.2): assembled, factorized, solved; and what its solutions
 //! give, the added mass (2.11).
 //!
 //! Tested by `tests/near_contact`, `tests/reference_values`, `tests/gradients`.

@@ -1,4 +1,6 @@
 //! The nodes of one boundary in its own frame, and where they are in another's.
+//!
+//! Tested by `geometry/curve/tests.rs`, `fluid/assembly_test.rs`.
 
 use crate::base::complex::{Complex, cabs, complex};
 use crate::base::memory::{part, put};

@@ -1,4 +1,6 @@
 //! Rigid placements and velocities of the plane, and the slices of reals that hold many of them.
+//!
+//! Tested by `tests/articulated`, `tests/reference_values.rs:added_mass_turns_with_the_body`.
 
 use crate::base::complex::{Complex, cis, complex, perp};
 use crate::base::memory::{copy, part, part_mut};

@@ -1,4 +1,6 @@
 //! Adams–Bashforth–Moulton of order 4 with a fixed step.
+//!
+//! Tested by `integrate/tests/accuracy.rs`, `integrate/tests/estimates.rs`, `tests/integrators`.
 
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::rk4::later_stages;

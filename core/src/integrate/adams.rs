@@ -1,4 +1,6 @@
 //! Adams–Bashforth–Moulton of variable step and order, by differences (Shampine & Gordon 1975).
+//!
+//! Tested by `integrate/tests/accuracy.rs`, `integrate/tests/robustness.rs`, `tests/integrators`.
 
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};

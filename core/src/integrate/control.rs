@@ -1,5 +1,8 @@
 //! Error estimates of a trial step, and the order and step they lead to (Shampine & Gordon 1975,
 //! chapter 7).
+//!
+//! Tested by `integrate/tests/accuracy.rs:adams_errors_follow_the_tolerance_at_the_cost_of_the_published_method`,
+//! `integrate/tests/robustness.rs`.
 
 use super::formula::{Formula, MAX_ORDER, moulton};
 use crate::base::scalar::Real;

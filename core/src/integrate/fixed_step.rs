@@ -1,4 +1,6 @@
 //! What the methods of fixed step have in common: how many equal steps they remember, compensated sums, the first checks.
+//!
+//! Tested by `integrate/tests/accuracy.rs`, `integrate/tests/robustness.rs`.
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};

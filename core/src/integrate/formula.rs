@@ -9,6 +9,8 @@
 //! - predicted difference: `φᵉᵢ = Σ_{i≤j≤k} βⱼ φⱼ`,
 //! - corrector of order k + 1: `y = p + h gₖ₊₁ (f(p) − φᵉ₁)`,
 //! - new differences: `φᵢ = φᵉᵢ + (f − φᵉ₁)`.
+//!
+//! Tested by the tests at its end, `integrate/tests/accuracy.rs`.
 
 use crate::base::memory::at;
 use crate::base::scalar::Real;

@@ -1,4 +1,6 @@
 //! The implicit Runge–Kutta method of Gauss and Legendre with three stages, of order 6.
+//!
+//! Tested by the tests at its end, `integrate/tests/implicit.rs`, `tests/integrators`.
 
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::system::{Counters, System, all_finite, evaluate};

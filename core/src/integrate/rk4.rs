@@ -1,4 +1,6 @@
 //! The classical Runge–Kutta method of order 4.
+//!
+//! Tested by `integrate/tests/accuracy.rs`, `integrate/tests/estimates.rs`, `tests/integrators`.
 
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::system::{Counters, System, all_finite, evaluate};

@@ -1,4 +1,6 @@
 //! What an integrator is given, and what it refuses.
+//!
+//! Tested by `integrate/tests/robustness.rs`.
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};

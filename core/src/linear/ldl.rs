@@ -1,6 +1,8 @@
 //! Factorization L D Lᵀ of a small symmetric positive definite matrix in the caller's memory: the mass matrix, whose rows
 //! have different units. No rows are exchanged, and each pivot is judged by the diagonal entry it came from, so that a
 //! change of units changes neither the result nor what counts as singular.
+//!
+//! Tested by the tests at its end, `tests/extremes.rs:a_change_of_units_by_a_power_of_two_changes_no_digit`.
 
 use crate::base::memory::{at, axpy, inner, part, part_mut, put};
 use crate::base::scalar::Real;

@@ -1,4 +1,6 @@
 //! One boundary of the fluid: its compiled outline, and where its nodes and blocks are in the store.
+//!
+//! Tested by `fluid/assembly_test.rs` (χ₃).
 
 use crate::base::complex::{Complex, complex, dot};
 use crate::base::features;

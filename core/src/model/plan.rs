@@ -1,4 +1,6 @@
 //! What a model computes and what that costs: explicit, printable, and derived from the scene alone.
+//!
+//! Tested by `tests/ingredients`.
 
 use core::fmt;
 

@@ -1,4 +1,6 @@
 //! Scalar functions of time that drive joints and roots: value, rate and acceleration.
+//!
+//! Tested by the tests at its end, `tests/driving`.
 
 use crate::base::memory::part;
 use crate::base::scalar::Real;

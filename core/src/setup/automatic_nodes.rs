@@ -1,4 +1,6 @@
 //! Nodes from a tolerance: what a boundary needs by itself, and how far an asked tolerance can be met.
+//!
+//! Tested by `tests/indicators.rs:automatic_nodes_meet_the_tolerance`.
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};

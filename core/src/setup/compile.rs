@@ -1,4 +1,6 @@
 //! From a scene to a model: the set-up that happens once.
+//!
+//! Tested by `tests/allocation`, `tests/ingredients`.
 
 use crate::base::features;
 use crate::base::memory::{part, part_mut};

@@ -1,4 +1,6 @@
 //! Every boundary as the scene gives it, in the order of the unknowns.
+//!
+//! Tested by `tests/walls`, `tests/articulated`, whose links share a shape.
 
 use crate::base::scalar::Real;
 use crate::base::status::Place;

@@ -1,4 +1,6 @@
 //! Where everything goes in a model's store: the same lines count and place.
+//!
+//! Tested by `tests/allocation.rs:memory_of_exactly_the_required_length_suffices_and_one_less_is_refused`.
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};

@@ -1,4 +1,6 @@
 //! Fills a model's records and store: boundaries, links, coordinates.
+//!
+//! Tested by `tests/articulated`, `fluid/assembly_test.rs`.
 
 use crate::base::complex::{Complex, cabs, complex};
 use crate::base::features;

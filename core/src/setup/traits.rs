@@ -1,4 +1,6 @@
 //! What a scene requires to be modelled: what is absent here costs nothing later.
+//!
+//! Tested by `tests/ingredients`, `tests/articulated` (shortcuts).
 
 use crate::base::features;
 use crate::base::scalar::Real;

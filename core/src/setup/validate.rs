@@ -1,4 +1,6 @@
 //! What a scene must satisfy before anything is built: every refusal names the place, the quantity and its value.
+//!
+//! Tested by `tests/bad_input`.
 
 use crate::base::features;
 use crate::base::lanes::LEAST_NODES;

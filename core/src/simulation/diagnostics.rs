@@ -1,5 +1,7 @@
 //! What can be asked of a simulation at the state it shows: energies, impulses, gaps, forces, matrices, error
 //! indicators. The first question after a step costs one evaluation; the following ones share it.
+//!
+//! Tested by `tests/conservation`, `tests/reference_values`, `tests/gradients`, `tests/articulated`.
 
 use crate::base::memory::{at, copy, part, put};
 use crate::base::scalar::Real;

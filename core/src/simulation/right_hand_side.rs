@@ -1,4 +1,6 @@
 //! The equations of motion as an integrator sees them: ẏ = f(t, y), and what no trial state may do.
+//!
+//! Tested by `tests/driving`, `tests/conservation`.
 
 use crate::base::memory::{at, copy, part, part_mut, put};
 use crate::base::scalar::Real;

@@ -1,5 +1,7 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
+//!
+//! Tested by `tests/driving`, `tests/allocation`.
 
 use crate::base::memory::{at, copy, put};
 use crate::base::scalar::Real;

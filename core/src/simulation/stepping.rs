@@ -1,5 +1,7 @@
 //! Stepping: fixed steps, variable steps, dense output, and what is shown after each. A step that fails leaves time and
 //! state as they were.
+//!
+//! Tested by `tests/integrators`, `tests/driving`.
 
 use crate::base::memory::{copy, put};
 use crate::base::scalar::Real;

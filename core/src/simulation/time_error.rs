@@ -1,4 +1,6 @@
 //! What the integrators' estimates of their local errors come to, in the units of the coordinates.
+//!
+//! Tested by `tests/integrators.rs:estimated_time_errors_tell_lengths_and_angles_within_a_known_factor`.
 
 use crate::base::memory::at;
 use crate::base::scalar::Real;

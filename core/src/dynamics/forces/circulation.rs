@@ -1,11 +1,14 @@
-//! Circulation: the flow of constant circulations γ_i around links and obstacles, its energy gradient and the force
-//! linear in the velocities (Kutta–Joukowski), both as exact derivatives of discrete quantities.
+//! Circulation (section 3 of the paper, (3.5), (3.6)): the flow of constant circulations γ_i around links and
+//! obstacles, its energy gradient and the force linear in the velocities (Kutta–Joukowski), both as exact derivatives of discrete
+//! quantities.
 //!
 //! Core flow of boundary i in its frame: L(z) with Re L its stream function per 2π of strength, L = log z about a point or
 //! log W about an ellipse; strengths q_i = γ_i/2π. On all nodes Ψ = Σ q_i Re L, its fluxes dn = Σ q_i Re(ν L') and
 //! β = Σ q_i Re(iν L') with ν = n ds. The flow that cancels the cores' normal velocity solves A φ = Re(G) Ψ: one more
 //! right-hand side of the same matrix. Energy T_c = ½ (Ψ·dn − φ·β), impulse P = Bᵀφ − Sᵀdn with
 //! S = (y, −x, −|X|²/2). Everything here is per unit density of the fluid.
+//!
+//! Tested by `tests/circulation` (closed forms), `tests/gradients`, `tests/conservation`, `tests/near_contact`, `tests/errata`.
 
 use crate::base::complex::{Complex, cln, complex, csqrt, dot, perp};
 use crate::base::memory::{add, at, axpy, buffers, copy, inner, part, part_mut};

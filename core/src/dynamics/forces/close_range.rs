@@ -3,6 +3,8 @@
 //! The integrand |z − γ(t)|^(−α) varies on the scale |Im t*| of the point's preimage t*, far below the spacing of the
 //! outline's own nodes. A ladder centred at Re t* resolves it; its nodes depend on the scale alone, up to a shift, so they
 //! are tabulated for the scales 3^(−q), of which the next finer one is taken.
+//!
+//! Tested by `tests/repulsion`, `tests/near_contact`.
 
 use crate::base::complex::{Complex, cabs, complex};
 use crate::base::memory::{part, put};

@@ -2,6 +2,8 @@
 //! rule on the first boundary and, where it is close, on nodes of its own on the second ([`close_range`](super::close_range)),
 //! and its gradient
 //! ∂V/∂q_a = −α ε Σ ∬ |x − x'|^(−α−2) (x − x')·w_a ds ds'. (The printed (5.2) is wrong: docs/physics.md.) O(N²).
+//!
+//! Tested by `tests/gradients`, `tests/repulsion` (another quadrature), `tests/near_contact`, `tests/errata`.
 
 use crate::base::complex::{Complex, cabs, cis, complex};
 use crate::base::scalar::Real;

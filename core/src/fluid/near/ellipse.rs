@@ -1,4 +1,7 @@
 //! Preimages on an ellipse, in closed form: both roots of (a + b) W/2 + (a − b)/(2W) = z, W = e^(it), many at a time.
+//!
+//! Tested by `fluid/assembly_test.rs:corrected_weights_and_their_derivatives_integrate_a_constant_exactly`,
+//! `tests/near_contact`.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::base::complex::{Complex, complex};

@@ -3,6 +3,8 @@
 //! The density between two curves varies on the scale of the foci of their osculating circles. With distance d and
 //! curvatures k, k' towards the fluid, D = k k' d + k + k' and f = (k d + 2)(k' d + 2)(k k' d + 2 (k + k')), they lie
 //! c = √(d f/4)/D to both sides of a point between the curves. A ladder resolves the distance of the farther one.
+//!
+//! Tested by `tests/near_contact` (accuracy at few nodes), `tests/regrading`.
 
 use crate::base::complex::{Complex, cabs};
 use crate::base::index::Index;

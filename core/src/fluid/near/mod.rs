@@ -3,6 +3,8 @@
 //! preimages of nodes on the other boundaries ([`preimage`]) → the closed-form pole term of the quadrature ([`pole`]).
 //!
 //! All of it lives in a simulation's memory, in four buffers; a scene that is plain, or has one boundary, has none.
+//!
+//! Tested by `tests/near_contact`, `tests/regrading`.
 
 pub(crate) mod buffers;
 mod ellipse;

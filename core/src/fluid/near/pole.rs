@@ -7,6 +7,9 @@
 //!
 //! exactly for the trigonometric interpolant of the density. Its derivative by z is that of x times dx/dz. The cotangent
 //! of a sum needs no transcendental function per node: (c − τ s)/(s + τ c) with τ = tan(x/2), c + is = e^(imh/2).
+//!
+//! Tested by `fluid/assembly_test.rs:corrected_weights_and_their_derivatives_integrate_a_constant_exactly`,
+//! `tests/near_contact`.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::base::complex::{Complex, complex};

@@ -3,6 +3,9 @@
 //! x = s* − s_j is found relative to a node: γ(t_j + u) − γ(t_j) = z − Γ_j without cancellation ([`super::ellipse`] in closed form,
 //! [`super::search`] by Newton's method), then x = s(t_j + u) − s(t_j). The rounded Γ_j is the same number as in the
 //! kernel's reciprocal.
+//!
+//! Tested by `fluid/assembly_test.rs:corrected_weights_and_their_derivatives_integrate_a_constant_exactly`,
+//! `tests/near_contact`.
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::base::complex::{Complex, cabs, cln, complex, dot};

@@ -1,4 +1,6 @@
 //! Nodes of the present configuration on the boundaries that carry ladders.
+//!
+//! Tested by `tests/regrading`, `tests/near_contact`.
 
 use crate::base::index::Index;
 use crate::base::memory::{part_mut, put};

@@ -1,4 +1,6 @@
 //! Preimages on a curve without closed form: Newton's method, and a choice among its roots by a sum that is known.
+//!
+//! Tested by `tests/near_contact` (rectangles).
 #![allow(clippy::indexing_slicing)] // Indices run over arrays of the same constant length.
 
 use crate::base::complex::{Complex, cabs, complex, csin_cos, dot};

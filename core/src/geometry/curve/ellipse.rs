@@ -1,4 +1,6 @@
 //! Ellipse about the origin, in the eccentric angle.
+//!
+//! Tested by `geometry/curve/tests.rs`.
 
 use crate::base::complex::{Complex, complex, csin_cos, csqrt, perp};
 use crate::base::scalar::Real;

@@ -1,4 +1,6 @@
 //! Outline given by a finite Fourier sum: an entire function of the parameter.
+//!
+//! Tested by `geometry/curve/tests.rs`.
 
 use crate::base::complex::{Complex, cexp, cexpm1, cis, complex, perp};
 use crate::base::scalar::Real;

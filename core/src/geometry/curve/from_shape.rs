@@ -1,4 +1,6 @@
 //! From a shape to its outline: validation, curve, grading.
+//!
+//! Tested by `geometry/curve/tests.rs`, `tests/bad_input`.
 
 use super::polygon::{self, CORNER};
 use super::polyline::{area, boxes_len, cross, crossing, point, straight};

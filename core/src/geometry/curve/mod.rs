@@ -6,6 +6,8 @@
 //! Ellipses, stars and rectangles have exactly the measures given. A side of a polygon, of length L between right angles
 //! of corner radius R, lies inside the line through its vertices by 0.76 R ln(1 + e^(−1.31 L/R)) at its middle: 3 % of L
 //! at the largest radius L/2, 2·10⁻⁷ L at L/10, nothing to rounding from L/28 on.
+//!
+//! Tested by `geometry/curve/tests.rs`, `geometry/curve/added_mass_test.rs`.
 
 #[cfg(test)]
 mod added_mass_test;

@@ -4,6 +4,8 @@
 //! plus Σ Δₘ rₘ ln(1 + e^(−|σ − σₘ|/rₘ)): analytic for |Im σ| < π r, straight to rounding some 36 r away from a
 //! corner. A corner radius R (that of an arc) means r = R tan(T/4) / (2 ln 2 · 1.107 cos(T/2)) at the turn T, which
 //! adds the same mass as the arc does for T = 90°.
+//!
+//! Tested by `geometry/curve/tests.rs`, `geometry/curve/added_mass_test.rs`.
 
 use crate::base::complex::{Complex, cabs, cexp, cexpm1, cln_1p, complex, dot};
 use crate::base::memory::{part, part_mut, put};

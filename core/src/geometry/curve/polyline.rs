@@ -1,4 +1,6 @@
 //! Tests on closed polylines: area, straightness, self-intersection.
+//!
+//! Tested by `geometry/curve/tests.rs`.
 
 use crate::base::complex::{Complex, cabs, complex, dot, perp};
 use crate::base::memory::{at, put};

@@ -4,6 +4,8 @@
 //! converges on it faster than any power; the control points are chosen so that the *filtered* curve interpolates.
 //! Both the spline's samples and the Gaussian live on a grid of 16 n points; as the Gaussian of width σ = π/n has
 //! died away at the grid's Nyquist mode, convolving on the grid is exact to rounding.
+//!
+//! Tested by the tests at its end, `geometry/curve/tests.rs`, `geometry/curve/added_mass_test.rs`.
 
 use crate::base::complex::{Complex, cabs};
 use crate::base::memory::{add, at, axpy, buffers, part, part_mut, put};

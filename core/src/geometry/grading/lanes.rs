@@ -1,5 +1,6 @@
 //! The map t → s at many parameters at once: the rungs outside, the parameters in the inner loop, so that it vectorizes.
 //!
+//! Tested by the tests of `geometry/grading/mod.rs`, `geometry/curve/tests.rs`.
 #![allow(clippy::indexing_slicing)] // All indices run over arrays of the same constant length.
 
 use super::Grading;

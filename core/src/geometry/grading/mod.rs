@@ -7,6 +7,8 @@
 //!
 //! an increasing function that is analytic in |Im t| < min b, so that the trapezoid rule in s keeps its spectral
 //! accuracy. Corners and bends bring permanent ladders; a ladder at a contact is one more entry of the list.
+//!
+//! Tested by the tests at its end, `geometry/curve/tests.rs`.
 
 use crate::base::memory::{at, part, put};
 use crate::base::scalar::Real;

@@ -1,4 +1,6 @@
 //! Division of a block by the triangle above it, without vectors of a machine's own.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 use super::rows::Rows;
 use crate::base::memory::{at, part, part_mut};

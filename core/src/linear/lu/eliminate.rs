@@ -1,5 +1,7 @@
 //! Elimination of a block of eight columns, for a machine's own vectors: in one pass over its rows where partial pivoting
 //! exchanges nothing, else column by column with exchanges.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 use super::rows::{BLOCK, Rows, exchange};
 use super::tile::{begin, halves, store};

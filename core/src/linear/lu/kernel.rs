@@ -1,4 +1,6 @@
 //! The loops of the factorization that are worth instructions of their own, and who has them.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 use super::divide::divide;
 use super::rows::{BLOCK, Rows};

@@ -6,6 +6,8 @@
 //! one register tile does, compiled for what the machine at hand offers (module `kernel` chooses: `tile`, `eliminate` and
 //! `triangle`, or `portable`).
 //! Cost: 2n³/3 for [`factor`], 2n² for each solve.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 mod divide;
 #[cfg(target_arch = "x86_64")]

@@ -1,5 +1,7 @@
 //! The factorization for any machine: one register tile in plain Rust, which compilers turn into vectors where there are some,
 //! and which stays small on a microcontroller.
+//!
+//! Tested by the test at its end, `linear/lu/tests.rs`.
 
 use super::kernel::Kernel;
 use super::rows::{Rows, exchange};

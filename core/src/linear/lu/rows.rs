@@ -1,4 +1,6 @@
 //! What the loops of the factorization share: rows of a product, exchanges.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 use crate::base::memory::{at, put};
 use crate::base::scalar::Real;

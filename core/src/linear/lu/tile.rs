@@ -2,6 +2,8 @@
 //!
 //! Everything here is safe and inlined into the entry points of [`super::kernel`], which choose the vector type.
 //! Matrices are column-major with leading dimension `ld`.
+//!
+//! Tested by `linear/lu/tests.rs:instructions_change_the_factors_by_rounding_only`.
 
 use super::rows::Rows;
 use crate::base::machine::Lanes;

@@ -1,4 +1,6 @@
 //! Solves with triangles of at most eight rows, and with the transposed factors, for a machine's own vectors.
+//!
+//! Tested by `linear/lu/tests.rs`.
 
 use super::rows::BLOCK;
 use super::tile::{COLUMNS, begin, halves, store};
