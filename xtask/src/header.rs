@@ -199,7 +199,7 @@ fn tidy(text: &str) -> String {
 fn errors() -> (PathBuf, String) {
     let mut text = String::from(
         "# Errors and notices\n\n\
-         Made by `cargo xtask header` from the one list in core/src/status.rs. A call returns the number; \
+         Made by `cargo xtask header` from the one list in core/src/base/status.rs. A call returns the number; \
          `nekton_status_text` gives the text, `nekton_diag` says where and which value.\n\n\
          | number | C | Rust | Matlab identifier | meaning |\n|---:|---|---|---|---|\n",
     );

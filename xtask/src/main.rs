@@ -35,7 +35,7 @@ commands:
   layers [--picture] [FOLDER]
              checks the imports of core against the order of its layers, and that no crate has circles of files; --picture:
              writes docs/layers.svg (FOLDER: in another checkout)
-  header     include/nekton.h, include/nekton32.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/status.rs
+  header     include/nekton.h, include/nekton32.h and ffi/src/api32.rs from ffi/src, docs/errors.md from core/src/base/status.rs
 ";
 
 fn main() -> ExitCode {
