@@ -1,9 +1,10 @@
 //! `cargo xtask layers`: the order of the layers of core, held against what its files import, and the picture of them. Also:
-//! no circles between the files of the other crates.
+//! no circles between the files of the other crates, and no name in docs/architecture.md of what is not there.
 
 mod circles;
 mod imports;
 mod list;
+mod names;
 mod picture;
 #[cfg(test)]
 mod tests;
@@ -67,6 +68,21 @@ fn lists_layers(page: &str) -> bool {
     })
 }
 
+/// Names of functions and tests that the map and the headers of core tell, and that are not there.
+fn names(root: &Path, core: &Sources) -> Vec<String> {
+    let text = |path: &str| std::fs::read_to_string(root.join(path)).ok();
+    let mut faults = Vec::new();
+    if let Some(page) = text(PAGES[0]) {
+        faults.extend(names::of_map(&page, &text).into_iter().map(|why| format!("{}: {why}", PAGES[0])));
+    }
+    for file in &core.files {
+        let path = format!("core/src/{file}");
+        let header = text(&path).unwrap_or_default();
+        faults.extend(names::of_header(&header, &text).into_iter().map(|why| format!("{path}: {why}")));
+    }
+    faults
+}
+
 /// Everything that is wrong in a checkout.
 fn faults(root: &Path) -> Result<Vec<String>, String> {
     let core = sources(root, "core/src")?;
@@ -84,6 +100,7 @@ fn faults(root: &Path) -> Result<Vec<String>, String> {
             _ => {}
         }
     }
+    faults.extend(names(root, &core));
     if read(&root.join(PICTURE)).ok() != Some(picture::draw(&core)) {
         faults.push(format!("{PICTURE} is not what the imports give: cargo xtask layers --picture"));
     }

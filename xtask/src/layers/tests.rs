@@ -1,6 +1,6 @@
 use super::imports::{Sources, read};
 use super::list::{LAYERS, layer_of};
-use super::{circles, lists_layers, upward};
+use super::{circles, lists_layers, names, upward};
 
 /// Reads made-up files.
 fn crate_of(files: &[(&str, &str)]) -> Sources {
@@ -194,4 +194,31 @@ fn pages_show_the_layers_in_their_order_within_one_block() {
     assert!(!lists_layers(&page));
     assert_eq!(layer_of("dynamics/forces/buoyancy.rs"), layer_of("dynamics/mod.rs"));
     assert_eq!((layer_of("scene.rs"), layer_of("work.rs")), (Some(2), None));
+}
+
+#[test]
+fn names_of_the_map_and_of_headers_that_are_not_there_are_found() {
+    let files = [
+        ("core/src/fluid/gap.rs", "/// A gap.\npub(crate) fn gap<R: Real>() {}\nfn gap_of() {}"),
+        ("tests/tests/walls.rs", "fn wide() {}\n\n#[test]\nfn walls_hold() {}\n"),
+    ];
+    let read = |path: &str| files.iter().find(|(name, _)| *name == path).map(|(_, text)| text.to_string());
+    let table = |code: &str, test: &str| {
+        names::of_map(&format!("| formula | code | test |\n|---|---|---|\n| (1.1) | `{code}` | `{test}` |\n"), &read)
+    };
+    assert!(table("fluid/gap.rs:gap", "tests/walls.rs:walls_hold").is_empty());
+    assert_eq!(table("fluid/gap.rs:ga", "tests/walls.rs:walls_hold"), ["fluid/gap.rs has no function ga"]);
+    assert_eq!(table("fluid/no.rs:gap", "tests/walls.rs:walls_hold"), ["there is no file fluid/no.rs"]);
+    // A function that is no test, and a row without one.
+    assert_eq!(table("fluid/gap.rs:gap", "tests/walls.rs:wide"), ["tests/walls.rs has no test wide"]);
+    assert_eq!(table("fluid/gap.rs:gap", "").len(), 1);
+    // Names outside of the table count, and a page without it is none.
+    assert_eq!(names::of_map("See `fluid/gap.rs:other`.", &read).len(), 2);
+    assert!(names::of_header("//! Tested by `tests/walls` and\n//! `tests/walls.rs:walls_hold`.\n", &read).is_empty());
+    assert_eq!(names::of_header("//! Tested by `tests/wall`.", &read), ["there is no file tests/wall.rs"]);
+    assert_eq!(
+        names::of_header("//! Tested by\n//! `tests/walls.rs:wide`.", &read),
+        ["tests/walls.rs has no test wide"]
+    );
+    assert!(names::of_header("//! A.\nfn f() {} // Tested by `tests/none`", &read).is_empty());
 }
