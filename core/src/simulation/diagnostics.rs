@@ -54,7 +54,8 @@ impl<R: Real> Sim<'_, R> {
         smallest_gap(&self.model, Poses(poses))
     }
 
-    /// Energies at the state shown.
+    /// Energies at the state shown, J/m: ½ q̇ᵀ M q̇ (2.11) of fluid and bodies, P (2.8), V (5.1), T_c (section 3 of the paper). O(N²)
+    /// with repulsion, else O(N); like every question one evaluation more if it is the first one after a step.
     ///
     /// # Errors
     /// As an evaluation: `Contact`, `Singular`, `NonFiniteState`.
@@ -89,7 +90,7 @@ impl<R: Real> Sim<'_, R> {
         self.model.head.plan.circulation && self.model.head.plan.formulation != Formulation::Kirchhoff
     }
 
-    /// Linear impulse (x, y) and angular impulse about the origin of bodies, fluid and circulation. Constant in unbounded
+    /// Linear impulse (x, y), N·s/m, and angular impulse about the origin, N·s, of bodies, fluid and circulation. O(N). Constant in unbounded
     /// fluid without gravity and obstacles (with circulation: in the full model).
     ///
     /// # Errors
@@ -121,7 +122,8 @@ impl<R: Real> Sim<'_, R> {
         Ok(total)
     }
 
-    /// Torque (force for a slider) that drives every joint, and its power ν u̇ (7.2). `joint_count` each.
+    /// Torque ν that drives every joint (7.2), N (a force for a slider, N/m), and its power ν u̇, W/m. `joint_count` each. Two solves,
+    /// O(N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -145,7 +147,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// Accelerations q̈ (3 per link).
+    /// Accelerations q̈ (6.3), m/s² and rad/s² (3 per link).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -156,7 +158,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// Symmetrized added mass M^f (3n × 3n, column-major). 3n solves.
+    /// Symmetrized added mass M^f (2.11) (3n × 3n, column-major; kg/m, kg, kg·m). 3n solves, O(n N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -168,7 +170,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// Mass matrix M = diag(m, m, I) + M^f (3n × 3n, column-major).
+    /// Mass matrix M = diag(m, m, I) + M^f (3n × 3n, column-major; kg/m, kg, kg·m). O(n N²).
     ///
     /// # Errors
     /// As [`Sim::added_mass`].
@@ -178,7 +180,8 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// Christoffel force ⟨Γ, q̇, q̇⟩ (3 per link), by the scene's formula.
+    /// Christoffel force ⟨Γ, q̇, q̇⟩ (2.15), N/m and N (3 per link), by the scene's formula. At most four solves and a pass over the pairs,
+    /// O(N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -222,7 +225,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// ∂P/∂q of weight and buoyancy (3 per link).
+    /// ∂P/∂q of weight and buoyancy (2.8), (2.16), N/m and N (3 per link). O(n).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -234,7 +237,7 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// ∂V/∂q of repulsion (3 per link); 0 without repulsion.
+    /// ∂V/∂q of repulsion (5.1), N/m and N (3 per link); 0 without repulsion. O(N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -248,7 +251,8 @@ impl<R: Real> Sim<'_, R> {
         Ok(())
     }
 
-    /// ∂T_c/∂q of the circulatory flow's energy (3 per link); 0 without circulation.
+    /// ∂T_c/∂q of the circulatory flow's energy (3.5), (3.6), N/m and N (3 per link); 0 without circulation. A solve and a pass over
+    /// the pairs, O(N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].
@@ -264,7 +268,7 @@ impl<R: Real> Sim<'_, R> {
     }
 
     /// The antisymmetric matrix G of the force +G q̇ linear in the velocities (3n × 3n, column-major); 0 without circulation
-    /// and in the paper's model. 6n solves.
+    /// and in the paper's model (3.4). 6n solves, O(n N²).
     ///
     /// # Errors
     /// `Length`, and as [`Sim::energy`].

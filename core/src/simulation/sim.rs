@@ -121,7 +121,8 @@ impl<'a, R: Real> Sim<'a, R> {
         Ok(SimHead { progress, kept: Kept::default() })
     }
 
-    /// Starts a simulation in the caller's memory at time 0 and the scene's initial state.
+    /// Starts a simulation in the caller's memory at time 0 and the scene's initial state. O(N²) in pairs of boundaries that are close;
+    /// one evaluation for a lone swimmer.
     ///
     /// # Errors
     /// `MemoryTooSmall`, `Overlap`, `OutsideTank`, `Singular`.
@@ -162,7 +163,7 @@ impl<'a, R: Real> Sim<'a, R> {
         Ok(sim)
     }
 
-    /// The view of a simulation that [`Sim::init`] set up in this memory, for this model.
+    /// The view of a simulation that [`Sim::init`] set up in this memory, for this model. O(1).
     ///
     /// # Errors
     /// `MemoryTooSmall`.
@@ -190,11 +191,11 @@ impl<'a, R: Real> Sim<'a, R> {
     pub fn time(&self) -> R {
         self.progress.time
     }
-    /// x, y, θ of every link's centre of mass (3 per link).
+    /// x, y, m, of every link's centre of mass and its heading θ, rad (3 per link).
     pub fn positions(&self) -> &[R] {
         self.state.positions
     }
-    /// ẋ, ẏ, θ̇ of every link (3 per link).
+    /// ẋ, ẏ, m/s, and θ̇, rad/s, of every link (3 per link).
     pub fn velocities(&self) -> &[R] {
         self.state.velocities
     }
@@ -315,7 +316,7 @@ impl<'a, R: Real> Sim<'a, R> {
         Ok(())
     }
 
-    /// The right-hand side of the state's equation, for the user's own integrator. `y` and `ydot` as [`Sim::state`]. The
+    /// The right-hand side of the state's equation, for the user's own integrator: one evaluation. `y` and `ydot` as [`Sim::state`]. The
     /// simulation's own state does not change.
     ///
     /// # Errors

@@ -15,7 +15,8 @@ use crate::simulation::sim::Sim;
 use crate::simulation::state::{Clock, Method, Watch};
 
 impl<R: Real> Sim<'_, R> {
-    /// One step of the method (for `Adams` one step of its own choice).
+    /// One step of the method (for `Adams` one step of its own choice): as many evaluations as [`Method`] says, each O(N³) in the
+    /// unknowns of the boundary system ([`crate::Plan::unknowns`]).
     ///
     /// # Errors
     /// `Contact`, `Singular`, `NonFiniteState`, `StepTooSmall`, `NoConvergence`; time and state are then as before.

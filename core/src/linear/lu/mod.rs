@@ -37,7 +37,7 @@ pub struct Factors<'a, R: Real> {
     pub lu: &'a [R],
     /// Leading dimension.
     pub ld: usize,
-    /// Pivot row of each column .
+    /// Row exchanged at each step, n.
     pub pivots: &'a [R::Index],
 }
 
@@ -57,7 +57,7 @@ macro_rules! with_kernel {
 /// Factorizes the first `n` columns of `a` in place and carries the further columns (right-hand sides) along:
 /// they come out as L⁻¹P b, ready for [`Factors::back_substitute`].
 ///
-/// Returns the smallest pivot relative to the largest.
+/// Returns the smallest pivot relative to the largest. `pivots`: n long. 2n³/3 operations, and 2n² for each further column.
 ///
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
@@ -206,7 +206,7 @@ fn exchange_all<R: Real>(columns: &mut [R], ld: usize, k: usize, pivots: &[R::In
 }
 
 impl<R: Real> Factors<'_, R> {
-    /// Solves A x = b in place.
+    /// Solves A x = b in place; `b`: n long. 2n² operations.
     pub fn solve(&self, b: &mut [R]) {
         let b = part_mut(b, 0, self.pivots.len());
         exchange_all(b, self.ld, 0, self.pivots);
@@ -221,7 +221,7 @@ impl<R: Real> Factors<'_, R> {
         with_kernel!(Machine::here(), kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));
     }
 
-    /// Solves Aᵀ x = b in place.
+    /// Solves Aᵀ x = b in place; `b`: n long. 2n² operations.
     pub fn solve_transposed(&self, b: &mut [R]) {
         with_kernel!(Machine::here(), kernel => kernel.solve_transposed(self.lu, self.ld, self.pivots.len(), b));
         for (c, row) in self.pivots.iter().enumerate().rev() {
