@@ -54,7 +54,7 @@ mod setup;
 mod simulation;
 
 pub use base::{scalar, status};
-pub use linear::lu;
+pub use linear::lu::{self, Factorization};
 #[cfg(feature = "bench")]
 #[doc(hidden)]
 pub use simulation::stages;

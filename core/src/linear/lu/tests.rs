@@ -61,7 +61,7 @@ fn factors_of_all<R: Real>(a: &[R], ld: usize, n: usize) -> Vec<(Vec<R>, Vec<R::
     let mut all = Vec::new();
     for level in Machine::all() {
         let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::Index::default(); n]);
-        with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
+        with_kernel!(level, kernel => factor_by(kernel, Factorization::Own, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
         all.push((lu, pivots));
     }
     all
@@ -127,8 +127,8 @@ fn a_factorization_continued_from_its_first_block_solves_the_system() {
                 let sum = |i: usize| (0..n).map(|j| a[j * ld + i]).sum::<f64>();
                 lu.extend((0..n).map(sum).chain([0.0; 3]));
                 with_kernel!(level, kernel => {
-                    factor_by(kernel, &mut lu[..done * ld], ld, done, 0, &mut pivots, |_| 1).unwrap();
-                    factor_by(kernel, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
+                    factor_by(kernel, Factorization::Own, &mut lu[..done * ld], ld, done, 0, &mut pivots, |_| 1).unwrap();
+                    factor_by(kernel, Factorization::Own, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
                 });
                 let (lu, carried) = lu.split_at(n * ld);
                 let factors = Factors { lu, ld, pivots: &pivots };
@@ -153,7 +153,7 @@ fn zeros_at_the_top_of_right_hand_sides_need_not_be_carried() {
         columns(&mut a);
         let (mut all, mut some, mut pivots) = (a.clone(), a, std::vec![0; n]);
         factor(&mut all, ld, n, &mut pivots).unwrap();
-        factor_further(&mut some, ld, n, 0, &mut pivots, |row| row.div_ceil(12)).unwrap();
+        factor_further(Factorization::Own, &mut some, ld, n, 0, &mut pivots, |row| row.div_ceil(12)).unwrap();
         for (x, y) in all.chunks(ld).zip(some.chunks(ld)) {
             assert!(x[..n].iter().zip(y).all(|(x, y)| (x - y).abs() < 1e-9 * (1.0 + x.abs())));
         }
