@@ -59,6 +59,9 @@ pub use linear::lu::{self, Factorization};
 #[doc(hidden)]
 pub use simulation::stages;
 
+/// Vectors and matrices are also to be had as views of this version of nalgebra (see [`Sim::mass_matrix_view`]).
+pub use nalgebra;
+
 pub use base::scalar::Real;
 pub use base::status::{Error, Place, Result, Status};
 pub use dynamics::evaluation::Counters;

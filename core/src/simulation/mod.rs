@@ -8,3 +8,4 @@ pub(crate) mod sim;
 pub mod stages;
 pub(crate) mod stepping;
 pub(crate) mod time_error;
+pub(crate) mod views;

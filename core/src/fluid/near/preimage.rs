@@ -12,7 +12,7 @@ use crate::base::memory::{at, copy, part_mut};
 use crate::base::once::once;
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
-use crate::fluid::near::buffers::{Near, NearMut, PREIMAGES, PREIMAGE_REALS, Preimage};
+use crate::fluid::near::buffers::{Near, NearMut, PREIMAGE_REALS, PREIMAGES, Preimage};
 use crate::geometry::curve::{Curve, OutlineView};
 use crate::geometry::grading::Offset;
 use crate::geometry::nodes::Nodes;

@@ -101,13 +101,7 @@ pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R::Index]
 ///
 /// # Errors
 /// As [`factor`]; `Unsupported` for faer without its feature, `OutOfRange` for no thread, `OutOfMemory` where faer got none.
-pub fn factor_with<R: Real>(
-    by: Factorization,
-    a: &mut [R],
-    ld: usize,
-    n: usize,
-    pivots: &mut [R::Index],
-) -> Result<R> {
+pub fn factor_with<R: Real>(by: Factorization, a: &mut [R], ld: usize, n: usize, pivots: &mut [R::Index]) -> Result<R> {
     factor_further(by.checked()?, a, ld, n, 0, pivots, |_| usize::MAX)
 }
 
