@@ -6,7 +6,7 @@
 //! A [`scene::Scene`] is compiled into an immutable [`Model`]; any number of [`Sim`]s step it, one per thread. With the
 //! feature `alloc` (in `std`, on by default) [`ModelBuf`] and [`SimBuf`] own their memory; without it the caller gives
 //! slices of the lengths that [`Model::requirement`] and [`Sim::requirement`] name. Stepping allocates nothing, locks
-//! nothing, prints nothing and does not panic.
+//! nothing, prints nothing and does not panic (but for what [`Sim::set_factorization`] says of faer, where that is asked for).
 //!
 //! ```
 //! use nekton::scene::{Body, Link, Mass, Root, Scene, Shape};

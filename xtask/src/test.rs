@@ -41,7 +41,7 @@ pub fn run(wish: Wish) -> ExitCode {
     let features =
         ["clippy", "--package", "nekton", "--all-targets", "--features", "fft,faer", "--", "--deny", "warnings"];
     steps.command("lints with fft and faer", &mut cargo(&features));
-    steps.run("no faer in C archives, command and microcontrollers", || without_faer().into());
+    steps.run("no faer in the C archives and the command", || without_faer().into());
     steps.run("instructions per evaluation", crate::counts::held);
     steps.command(
         "documentation",
