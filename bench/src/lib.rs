@@ -1,6 +1,7 @@
 //! How fast nekton is: stages, whole evaluations, and both beside OpenBLAS's factorization.
 
 pub mod counted;
+pub mod faer;
 pub mod lapack;
 pub mod passing;
 pub mod rows;

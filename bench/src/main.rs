@@ -6,7 +6,7 @@ use nekton_bench::passing::{Point, Scheme, points};
 use nekton_bench::rows::{Held, Row, rows};
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: nekton-bench table | guard | counted | repeat NAME CALLS";
+const USAGE: &str = "usage: nekton-bench table | faer | guard | counted | repeat NAME CALLS";
 
 /// A value may leave what it must be by this much before the guard complains, and only if it does so each time.
 const SLACK: f64 = 1.15;
@@ -17,6 +17,11 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["table"] => with_lapack(table),
+        // Lines of the table alone; of a program built with the feature `faer`.
+        ["faer"] => with_lapack(|lapack| {
+            lines(lapack, &nekton_bench::faer::rows());
+            ExitCode::SUCCESS
+        }),
         ["guard"] => with_lapack(guard),
         // What can be repeated, and how often that pays.
         ["counted"] => {
@@ -56,7 +61,18 @@ fn with_lapack(run: fn(&Lapack) -> ExitCode) -> ExitCode {
 fn table(lapack: &Lapack) -> ExitCode {
     println!("# {}", lapack.name);
     println!("{}", Row::HEAD);
-    let rows = rows();
+    lines(lapack, &rows());
+    if cfg!(nekton_portable) {
+        return ExitCode::SUCCESS;
+    }
+    println!("\n{}", Point::HEAD);
+    for scheme in [Scheme::Nekton, Scheme::Plain, Scheme::Octave] {
+        points(scheme).iter().flatten().for_each(|point| println!("{}", point.line()));
+    }
+    ExitCode::SUCCESS
+}
+
+fn lines(lapack: &Lapack, rows: &[Row]) {
     for (k, row) in rows.iter().enumerate() {
         eprintln!("{} of {}: {} ({})", k + 1, rows.len(), row.name, row.size);
         let measured = row.measure(lapack);
@@ -66,14 +82,6 @@ fn table(lapack: &Lapack) -> ExitCode {
         }
         println!("{}", row.line(&measured));
     }
-    if cfg!(nekton_portable) {
-        return ExitCode::SUCCESS;
-    }
-    println!("\n{}", Point::HEAD);
-    for scheme in [Scheme::Nekton, Scheme::Plain, Scheme::Octave] {
-        points(scheme).iter().flatten().for_each(|point| println!("{}", point.line()));
-    }
-    ExitCode::SUCCESS
 }
 
 /// Fails when a value is too large in every repeat.

@@ -9,7 +9,7 @@ use nekton::scene::{Body, Harmonic, Quadrature, Root, Scene, Signal};
 use nekton_tests::{body, simulation};
 use std::sync::atomic::{AtomicU8, Ordering};
 
-type Run = Box<dyn Fn(&Lapack) -> Result<Measured, String>>;
+pub(crate) type Run = Box<dyn Fn(&Lapack) -> Result<Measured, String>>;
 
 /// A measurement: a ratio of two times, or one time.
 pub struct Row {
@@ -23,7 +23,7 @@ pub struct Row {
     pub aim: f64,
     /// Whether the guard holds it to `must`.
     pub held: Held,
-    run: Run,
+    pub(crate) run: Run,
 }
 
 /// What the guard does with a row.

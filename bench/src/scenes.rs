@@ -2,7 +2,7 @@
 
 use nekton::scalar::Real;
 use nekton::scene::{Body, Drive, Harmonic, Link, Quadrature, Root, Scene, Shape, Signal, Wall};
-use nekton::{Method, SimBuf};
+use nekton::{Factorization, Method, SimBuf};
 use nekton_tests::{hinged, link, simulation, wall};
 
 /// A right-hand side to be evaluated again and again at one state.
@@ -19,6 +19,14 @@ impl<R: Real> Evaluation<R> {
         let state = sim.view().state().to_vec();
         let rate = vec![R::zero(); state.len()];
         Self { sim, state, rate }
+    }
+
+    /// From now on by this factorization.
+    ///
+    /// # Errors
+    /// As `Sim::set_factorization`.
+    pub fn factorize(&mut self, by: Factorization) -> nekton::Result<()> {
+        self.sim.view().set_factorization(by)
     }
 
     /// One evaluation of the equations of motion.

@@ -124,10 +124,13 @@ mod simulation;
 mod setup;
 
 pub use base::{scalar, status};
-pub use linear::lu;
+pub use linear::lu::{self, Factorization};
 #[cfg(feature = "bench")]
 #[doc(hidden)]
 pub use simulation::stages;
+
+/// Vectors and matrices are also to be had as views of this version of nalgebra (see [`Sim::mass_matrix_view`]).
+pub use nalgebra;
 
 pub use base::scalar::Real;
 pub use base::status::{Error, Place, Result, Status};

@@ -4,7 +4,7 @@ use crate::bare::{CORTEX_M, Compiler, compiler, installed};
 use crate::c;
 use crate::firmware;
 use crate::studies::studies;
-use nekton_steps::{Outcome, Steps, Wish, cargo, execute, require, root};
+use nekton_steps::{Outcome, Steps, Wish, ask, cargo, execute, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
@@ -35,19 +35,50 @@ pub fn run(wish: Wish) -> ExitCode {
     }
     steps.command("tests", &mut cargo(&["test", "--workspace", "--no-fail-fast"]));
     steps.command(
-        "core tests with fft",
-        &mut cargo(&["test", "--package", "nekton", "--features", "fft", "--no-fail-fast"]),
+        "core tests with fft and faer",
+        &mut cargo(&["test", "--package", "nekton", "--features", "fft,faer", "--no-fail-fast"]),
     );
+    let features =
+        ["clippy", "--package", "nekton", "--all-targets", "--features", "fft,faer", "--", "--deny", "warnings"];
+    steps.command("lints with fft and faer", &mut cargo(&features));
+    steps.run("no faer in the C archives and the command", || without_faer().into());
     steps.run("instructions per evaluation", crate::counts::held);
     steps.command(
         "documentation",
         cargo(&["doc", "--workspace", "--lib", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
+    );
+    steps.command(
+        "documentation with faer",
+        cargo(&["doc", "--package", "nekton", "--no-deps", "--features", "fft,faer"])
+            .env("RUSTDOCFLAGS", "--deny warnings"),
     );
     c::add(&mut steps);
     scenes(&mut steps);
     steps.command("speed against accuracy, quickly", &mut studies(&["trade", "--quick"]));
     steps.run("matlab (in octave)", matlab);
     steps.finish()
+}
+
+/// What promises to need no heap and no thread has nothing of faer, whatever features it is built with.
+fn without_faer() -> Result<(), String> {
+    for package in ["nekton-ffi", "nekton-cli"] {
+        let tree = ask(&mut cargo(&[
+            "tree",
+            "--package",
+            package,
+            "--edges",
+            "normal",
+            "--all-features",
+            "--prefix",
+            "none",
+        ]))?;
+        // A list without nekton itself would be no list.
+        match ["nekton ", "faer ", "rayon "].map(|name| tree.lines().any(|line| line.starts_with(name))) {
+            [true, false, false] => {}
+            _ => return Err(format!("{package} depends on:\n{tree}")),
+        }
+    }
+    Ok(())
 }
 
 /// Builds core for every bare target that is installed, and at least for one.

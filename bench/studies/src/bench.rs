@@ -47,13 +47,23 @@ fn measure() -> Result<(), String> {
     let printed = listen(Command::new(usual).arg("table"))?;
     let (ratios, passing) = printed.split_once("\n\n").ok_or("the table is cut off")?;
     let without = listen(Command::new(portable).arg("table"))?;
+    let by_faer = with_faer()?;
     eprintln!("microcontrollers");
     let embedded = on_microcontrollers();
     embedded.lines().for_each(|line| eprintln!("  {line}"));
     let portable_rows: String = without.lines().skip(2).map(|line| format!("{line}\n")).collect();
     let how = how();
-    put(TABLE, &format!("{how}{ratios}\n{portable_rows}{embedded}"))?;
+    put(TABLE, &format!("{how}{ratios}\n{by_faer}{portable_rows}{embedded}"))?;
     put(PASSING, &format!("{how}{passing}"))
+}
+
+/// Rows of faer as a peer, by a program of their own: the others are measured without its feature.
+fn with_faer() -> Result<String, String> {
+    let folder = root().join("target/faer");
+    let mut build =
+        cargo(&["build", "--release", "--quiet", "--package", "nekton-bench", "--bins", "--features", "faer"]);
+    ask(build.arg("--target-dir").arg(&folder))?;
+    listen(Command::new(folder.join("release/nekton-bench")).arg("faer"))
 }
 
 fn put(file: &str, text: &str) -> Result<(), String> {

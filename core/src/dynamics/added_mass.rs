@@ -37,7 +37,8 @@ impl<R: Real> Evaluation<'_, R> {
         }
         counters.factorizations += 1;
         let (motions, pairs) = (&*columns.in_links, &mut self.pairs);
-        solve_columns(&mut self.system, &mut self.kept.walls_ready, c, motions, pairs.zx, pairs.zy)?;
+        let by = self.kept.factorization();
+        solve_columns(by, &mut self.system, &mut self.kept.walls_ready, c, motions, pairs.zx, pairs.zy)?;
         column_momenta(&self.system, c, motions, pairs.hx, pairs.hy, pairs.fx, columns.momenta);
         for momentum in columns.momenta.chunks_exact_mut(rows) {
             to_world(c, model.head.fluid_density, momentum);

@@ -16,6 +16,7 @@ use crate::fluid::induced::PairScratch;
 use crate::fluid::near::buffers::{COLUMNS, LADDERS, LISTS, Near, NearMut, PREIMAGE_REALS, PREIMAGES};
 use crate::fluid::system::BoundarySystem;
 use crate::geometry::pose::Poses;
+use crate::linear::lu::Factorization;
 use crate::model::{Model, ModelHead, NearDims};
 
 /// Numbers that the arrays' lengths follow from.
@@ -220,6 +221,20 @@ pub(crate) struct Kept<R> {
     /// Where in its memory the matrix begins: a number, so that memory that is moved keeps its meaning.
     matrix_at: usize,
     pub indicators: Indicators<R>,
+    /// Who factorizes the matrix.
+    #[cfg(feature = "faer")]
+    pub factorization: Factorization,
+}
+
+impl<R> Kept<R> {
+    /// Who factorizes the matrix.
+    #[inline]
+    pub(crate) fn factorization(&self) -> Factorization {
+        #[cfg(feature = "faer")]
+        return self.factorization;
+        #[cfg(not(feature = "faer"))]
+        Factorization::Own
+    }
 }
 
 /// All arrays of one evaluation.

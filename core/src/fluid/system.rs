@@ -13,7 +13,7 @@ use crate::fluid::configuration::Configuration;
 use crate::fluid::potentials::potential;
 use crate::geometry::nodes::Nodes;
 use crate::geometry::pose::{Twist, twist_of};
-use crate::linear::lu::{Factors, factor, factor_further};
+use crate::linear::lu::{Factorization, Factors, factor_further, factor_with};
 use crate::model::boundary::BoundaryRecord;
 
 /// The boundary system of one configuration in the caller's buffers: A, column-major with leading dimension `ld`, and behind it the
@@ -53,14 +53,14 @@ once! {
     /// three reals per link), factorizes and solves. `zx`, `zy`: scratch of length N. O(N³). The factors of the walls alone, which
     /// come first, are kept (`walls_ready`): they are the model's as long as no wall has nodes of its own here.
     pub(crate) fn solve_columns['a, 'b: 'a](
-        system: &'a mut BoundarySystem<'b, R>, walls_ready: &'a mut bool, c: &'a Configuration<'a, R>, motions: &'a [R],
+        by: Factorization, system: &'a mut BoundarySystem<'b, R>, walls_ready: &'a mut bool, c: &'a Configuration<'a, R>, motions: &'a [R],
         zx: &'a mut [R], zy: &'a mut [R],
     ) -> Result<()> {
         let (walls, regraded) = (c.model.head.wall_nodes, c.walls_regraded());
         let mut ready = *walls_ready && !regraded;
         assemble(c, ready, system.matrix, system.ld, system.regular, zx, zy);
         if walls > 0 && !regraded && !ready {
-            ready = factor(part_mut(system.matrix, 0, walls * system.ld), system.ld, walls, system.pivots).is_ok();
+            ready = factor_with(by, part_mut(system.matrix, 0, walls * system.ld), system.ld, walls, system.pivots).is_ok();
             if !ready {
                 assemble(c, false, system.matrix, system.ld, system.regular, zx, zy);
             }
@@ -92,7 +92,7 @@ once! {
         let begun = |row: usize| motions.chunks_exact(rows.max(1)).rposition(|v| begins(v) < row).map_or(0, |k| k + 1);
         let used = (system.unknowns + columns) * system.ld;
         let done = if ready { walls } else { 0 };
-        factor_further(part_mut(system.matrix, 0, used), system.ld, system.unknowns, done, system.pivots, begun)?;
+        factor_further(by, part_mut(system.matrix, 0, used), system.ld, system.unknowns, done, system.pivots, begun)?;
         let Some((lu, rest)) = system.matrix.split_at_mut_checked(system.unknowns * system.ld) else {
             return Err(Status::Internal.into());
         };

@@ -2,6 +2,10 @@
 //! have different units. No rows are exchanged, and each pivot is judged by the diagonal entry it came from, so that a
 //! change of units changes neither the result nor what counts as singular.
 //!
+//! Not nalgebra's Cholesky factorization: it asks of a pivot no more than that its root is real, so that one lost in rounding
+//! passes in one unit and not in another; its other factorizations exchange rows by size, which compares kilograms with kilogram
+//! square metres; and all of them own their matrix, on the heap where the size is not known to the compiler.
+//!
 //! Tested by the tests at its end, `tests/extremes.rs:a_change_of_units_by_a_power_of_two_changes_no_digit`.
 
 use crate::base::memory::{at, axpy, inner, part, part_mut, put};

@@ -9,3 +9,4 @@ pub mod stages;
 pub(crate) mod state;
 pub(crate) mod stepping;
 pub(crate) mod time_error;
+pub(crate) mod views;

@@ -11,6 +11,7 @@ use crate::dynamics::indicators::Resolution;
 use crate::fluid::contact::first_misplaced;
 use crate::geometry::pose::Poses;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
+use crate::linear::lu::Factorization;
 use crate::model::signal::CHANNEL_LEN;
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::simulation::right_hand_side::{RightHandSide, split_state};
@@ -235,6 +236,30 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         self.progress.step_limit = steps;
         Ok(())
+    }
+
+    /// Who factorizes the boundary system from now on, for scenes of many bodies; at first, and after [`Sim::init`],
+    /// [`Factorization::Own`]. The results differ by rounding. What faer takes: the rows and columns that are factorized anew with every
+    /// evaluation (all but the fixed walls'), from 512 on; assembly, right-hand sides and all solves stay on the caller's thread
+    /// (docs/design.md, section Several threads, says what is gained). With faer an evaluation allocates and may panic, and it may fail
+    /// with `OutOfMemory`. The C interface and the command do not offer it.
+    ///
+    /// # Errors
+    /// `Unsupported` for faer without the feature `faer`; `OutOfRange` for no thread. The choice is then as it was.
+    pub fn set_factorization(&mut self, by: Factorization) -> Result<()> {
+        let by = by.checked()?;
+        #[cfg(feature = "faer")]
+        {
+            self.evaluation.kept.factorization = by;
+        }
+        #[cfg(not(feature = "faer"))]
+        let _ = by;
+        Ok(())
+    }
+
+    /// Who factorizes the boundary system.
+    pub fn factorization(&self) -> Factorization {
+        self.evaluation.kept.factorization()
     }
 
     /// Adds the last step's estimated error to what [`Sim::time_error`] tells.

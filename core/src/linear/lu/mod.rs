@@ -9,6 +9,8 @@
 //!
 //! Tested by `linear/lu/tests.rs`.
 
+#[cfg(feature = "faer")]
+mod by_faer;
 mod divide;
 #[cfg(target_arch = "x86_64")]
 mod eliminate;
@@ -24,7 +26,7 @@ use crate::base::index::Index;
 use crate::base::machine::Machine;
 use crate::base::memory::{part, part_mut};
 use crate::base::scalar::Real;
-use crate::base::status::{Result, Status};
+use crate::base::status::{Error, Result, Status};
 use kernel::Kernel;
 use rows::{BLOCK, Rows, exchange};
 
@@ -39,6 +41,38 @@ pub struct Factors<'a, R: Real> {
     pub ld: usize,
     /// Row exchanged at each step, n.
     pub pivots: &'a [R::Index],
+}
+
+/// Who factorizes large systems (see [`crate::Sim::set_factorization`]).
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub enum Factorization {
+    /// This crate: on the caller's thread, without a heap.
+    #[default]
+    Own,
+    /// The crate [faer](https://docs.rs/faer), from 512 columns on; smaller ones are factorized by this crate all the same. Needs the
+    /// feature `faer`. What this crate promises of itself does not hold for faer: it allocates (3n whole numbers, and
+    /// its products their buffers), on more than one thread it wakes those of rayon's global pool and waits for them, and it may panic,
+    /// say if that pool cannot be started.
+    Faer {
+        /// How many threads work on it, not more than rayon's global pool has; 1: the caller's alone, without that pool.
+        threads: usize,
+    },
+}
+
+impl Factorization {
+    /// This one, if this build has it.
+    ///
+    /// # Errors
+    /// `Unsupported` without the feature `faer`, `OutOfRange` for no thread.
+    pub(crate) fn checked(self) -> Result<Self> {
+        match self {
+            Factorization::Faer { .. } if cfg!(not(feature = "faer")) => {
+                Err(Error::new(Status::Unsupported).of("factorization", f64::NAN))
+            }
+            Factorization::Faer { threads: 0 } => Err(Error::new(Status::OutOfRange).of("threads", 0.0)),
+            sound => Ok(sound),
+        }
+    }
 }
 
 /// Runs an expression with the kernel of the machine at hand.
@@ -62,12 +96,21 @@ macro_rules! with_kernel {
 /// # Errors
 /// `Singular` when a pivot column vanishes to rounding or holds a value that is not finite.
 pub fn factor<R: Real>(a: &mut [R], ld: usize, n: usize, pivots: &mut [R::Index]) -> Result<R> {
-    factor_further(a, ld, n, 0, pivots, |_| usize::MAX)
+    factor_further(Factorization::Own, a, ld, n, 0, pivots, |_| usize::MAX)
+}
+
+/// [`factor`] by whom is said. The factors differ by rounding.
+///
+/// # Errors
+/// As [`factor`]; `Unsupported` for faer without its feature, `OutOfRange` for no thread, `OutOfMemory` where faer got none.
+pub fn factor_with<R: Real>(by: Factorization, a: &mut [R], ld: usize, n: usize, pivots: &mut [R::Index]) -> Result<R> {
+    factor_further(by.checked()?, a, ld, n, 0, pivots, |_| usize::MAX)
 }
 
 /// The same where the first `done` rows and columns are factorized already, with their pivots, and where right-hand sides
 /// begin with zeros: `begun(row)` tells how many of these columns, from the first on, may hold anything else above that row.
 pub(crate) fn factor_further<R: Real>(
+    by: Factorization,
     a: &mut [R],
     ld: usize,
     n: usize,
@@ -75,11 +118,12 @@ pub(crate) fn factor_further<R: Real>(
     pivots: &mut [R::Index],
     begun: impl Fn(usize) -> usize,
 ) -> Result<R> {
-    with_kernel!(Machine::here(), kernel => factor_by(kernel, a, ld, n, done, pivots, begun))
+    with_kernel!(Machine::here(), kernel => factor_by(kernel, by, a, ld, n, done, pivots, begun))
 }
 
 fn factor_by<R: Real, K: Kernel<R>>(
     kernel: K,
+    by: Factorization,
     a: &mut [R],
     ld: usize,
     n: usize,
@@ -97,7 +141,7 @@ fn factor_by<R: Real, K: Kernel<R>>(
     extend(kernel, left, ld, n, done, 0);
     exchange_all(right, ld, 0, first);
     reduce(kernel, left, ld, n, 0, right);
-    let (mut smallest, mut largest) = eliminate(kernel, right, ld, n, done, second).ok_or(Status::Singular)?;
+    let (mut smallest, mut largest) = eliminate_by(kernel, by, right, ld, n, done, second)?;
     exchange_all(left, ld, done, second);
     for pivot in left.iter().step_by(ld.saturating_add(1)) {
         (smallest, largest) = (smallest.min(pivot.abs()), largest.max(pivot.abs()));
@@ -114,6 +158,27 @@ fn factor_by<R: Real, K: Kernel<R>>(
         return Err(Status::Singular.into());
     }
     Ok(ratio)
+}
+
+/// Eliminates the columns that are left, `block`, by whom is said. Returns the smallest and the largest pivot.
+#[inline(always)]
+#[cfg_attr(not(feature = "faer"), allow(unused_variables))]
+fn eliminate_by<R: Real, K: Kernel<R>>(
+    kernel: K,
+    by: Factorization,
+    block: &mut [R],
+    ld: usize,
+    n: usize,
+    k: usize,
+    pivots: &mut [R::Index],
+) -> Result<(R, R)> {
+    #[cfg(feature = "faer")]
+    if let Factorization::Faer { threads } = by
+        && pivots.len() >= by_faer::SMALLEST
+    {
+        return by_faer::eliminate(block, ld, n, k, pivots, threads);
+    }
+    eliminate(kernel, block, ld, n, k, pivots).ok_or(Status::Singular.into())
 }
 
 /// Eliminates the columns `block`, which begin at column `k`. Returns the smallest and the largest pivot.

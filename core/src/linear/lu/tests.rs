@@ -61,7 +61,7 @@ fn factors_of_all<R: Real>(a: &[R], ld: usize, n: usize) -> Vec<(Vec<R>, Vec<R::
     let mut all = Vec::new();
     for level in Machine::all() {
         let (mut lu, mut pivots) = (a.to_vec(), std::vec![R::Index::default(); n]);
-        with_kernel!(level, kernel => factor_by(kernel, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
+        with_kernel!(level, kernel => factor_by(kernel, Factorization::Own, &mut lu, ld, n, 0, &mut pivots, |_| usize::MAX)).unwrap();
         all.push((lu, pivots));
     }
     all
@@ -127,8 +127,8 @@ fn a_factorization_continued_from_its_first_block_solves_the_system() {
                 let sum = |i: usize| (0..n).map(|j| a[j * ld + i]).sum::<f64>();
                 lu.extend((0..n).map(sum).chain([0.0; 3]));
                 with_kernel!(level, kernel => {
-                    factor_by(kernel, &mut lu[..done * ld], ld, done, 0, &mut pivots, |_| 1).unwrap();
-                    factor_by(kernel, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
+                    factor_by(kernel, Factorization::Own, &mut lu[..done * ld], ld, done, 0, &mut pivots, |_| 1).unwrap();
+                    factor_by(kernel, Factorization::Own, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
                 });
                 let (lu, carried) = lu.split_at(n * ld);
                 let factors = Factors { lu, ld, pivots: &pivots };
@@ -153,7 +153,7 @@ fn zeros_at_the_top_of_right_hand_sides_need_not_be_carried() {
         columns(&mut a);
         let (mut all, mut some, mut pivots) = (a.clone(), a, std::vec![0; n]);
         factor(&mut all, ld, n, &mut pivots).unwrap();
-        factor_further(&mut some, ld, n, 0, &mut pivots, |row| row.div_ceil(12)).unwrap();
+        factor_further(Factorization::Own, &mut some, ld, n, 0, &mut pivots, |row| row.div_ceil(12)).unwrap();
         for (x, y) in all.chunks(ld).zip(some.chunks(ld)) {
             assert!(x[..n].iter().zip(y).all(|(x, y)| (x - y).abs() < 1e-9 * (1.0 + x.abs())));
         }
@@ -166,4 +166,92 @@ fn a_singular_matrix_is_refused() {
     assert_eq!(factor(&mut a, 2, 2, &mut [0u64; 2]).unwrap_err().status, Status::Singular);
     let mut a = [1.0, f64::NAN, 2.0, 4.0];
     assert!(factor(&mut a, 2, 2, &mut [0u64; 2]).is_err());
+}
+
+/// The own elimination of the columns from `k` on, and faer's on so many threads.
+#[cfg(feature = "faer")]
+fn compare_with_faer<R: Real>(a: &[f64], (ld, n, k): (usize, usize, usize), threads: usize, tolerance: f64) {
+    let a: Vec<R> = a[k * ld..n * ld].iter().map(|x| R::lit(*x)).collect();
+    let (mut own, mut pivots) = (a.clone(), std::vec![R::Index::default(); n - k]);
+    let (mut other, mut others_pivots) = (a.clone(), pivots.clone());
+    let machine = Machine::here();
+    let extremes = with_kernel!(machine, kernel => eliminate(kernel, &mut own, ld, n, k, &mut pivots)).unwrap();
+    let others_extremes = by_faer::eliminate(&mut other, ld, n, k, &mut others_pivots, threads).unwrap();
+    assert_eq!(pivots, others_pivots, "n = {n}, k = {k}, {threads} threads");
+    for ((x, y), before) in own.chunks(ld).zip(other.chunks(ld)).zip(a.chunks(ld)) {
+        for (i, (x, y)) in x.iter().zip(y).enumerate() {
+            let kept = i < k || i >= n;
+            assert!((*x - *y).to_f64().abs() <= tolerance && (!kept || *y == before[i]), "{n}, {k}: {x} and {y}");
+        }
+    }
+    for (x, y) in [(extremes.0, others_extremes.0), (extremes.1, others_extremes.1)] {
+        assert!((x - y).to_f64().abs() <= tolerance * x.to_f64());
+    }
+}
+
+#[cfg(feature = "faer")]
+#[test]
+fn faer_makes_the_own_factors_and_exchanges_but_for_rounding() {
+    for (n, k) in [(1, 0), (2, 1), (7, 3), (64, 24), (150, 0), (200, 37)] {
+        for a in [dominant(n, n + 3), random(n * (n + 3), 4)] {
+            for threads in 1..=3 {
+                compare_with_faer::<f64>(&a, (n + 3, n, k), threads, 1e-10);
+                compare_with_faer::<f32>(&a, (n + 3, n, k), threads, 1e-2);
+            }
+        }
+    }
+}
+
+#[cfg(feature = "faer")]
+#[test]
+fn systems_that_faer_factorizes_are_solved() {
+    let by = Factorization::Faer { threads: 2 };
+    for (n, done) in [(by_faer::SMALLEST, 0), (by_faer::SMALLEST + 60, 60)] {
+        let ld = n + 5;
+        for a in [dominant(n, ld), random(n * ld, 4)] {
+            let (mut lu, mut pivots) = (a.clone(), std::vec![0; n]);
+            let sum = |i: usize| (0..n).map(|j| a[j * ld + i]).sum::<f64>();
+            lu.extend((0..n).map(sum).chain([0.0; 5]));
+            factor(&mut lu[..done * ld], ld, done, &mut pivots).unwrap();
+            // From the first kept block on, as between walls.
+            let mut early = lu[..n * ld].to_vec();
+            factor_further(Factorization::Own, &mut early, ld, n, done, &mut pivots.clone(), |_| 1).unwrap();
+            factor_further(by, &mut lu, ld, n, done, &mut pivots, |_| 1).unwrap();
+            assert_ne!(&lu[..n * ld], early, "not by faer");
+            let (lu, carried) = lu.split_at(n * ld);
+            let factors = Factors { lu, ld, pivots: &pivots };
+            let (mut x, mut y) = (carried[..n].to_vec(), (0..n).map(sum).collect::<Vec<_>>());
+            let mut z: Vec<f64> = (0..n).map(|j| a[j * ld..j * ld + n].iter().sum()).collect();
+            factors.back_substitute(&mut x);
+            factors.solve(&mut y);
+            factors.solve_transposed(&mut z);
+            assert!(x.iter().chain(&y).chain(&z).all(|x| (x - 1.0).abs() < 1e-8), "{n}, {done} done");
+        }
+    }
+}
+
+#[cfg(feature = "faer")]
+#[test]
+fn what_the_own_path_refuses_is_refused_by_faer_too() {
+    let n = by_faer::SMALLEST;
+    let status = |by, a: &[f64]| factor_with(by, &mut a.to_vec(), n, n, &mut std::vec![0; n]).map_err(|e| e.status);
+    let mut cases = Vec::new();
+    for (row, column) in [(0, 0), (0, n - 1), (n - 1, 0), (n - 1, n - 1), (300, 17), (17, 300)] {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut a = dominant(n, n);
+            a[column * n + row] = bad;
+            cases.push(a);
+        }
+    }
+    let mut twice = random(n * n, 2);
+    twice.copy_within(5 * n..6 * n, 400 * n);
+    let mut empty = random(n * n, 2);
+    empty[77 * n..78 * n].fill(0.0);
+    cases.extend([twice, empty, std::vec![0.0; n * n]]);
+    for (i, a) in cases.iter().enumerate() {
+        for by in [Factorization::Own, Factorization::Faer { threads: 1 }, Factorization::Faer { threads: 2 }] {
+            assert_eq!(status(by, a), Err(Status::Singular), "case {i}, {by:?}");
+        }
+    }
+    assert!(status(Factorization::Faer { threads: 2 }, &dominant(n, n)).is_ok());
 }
