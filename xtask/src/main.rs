@@ -17,6 +17,7 @@ mod test;
 mod trade;
 
 use std::process::ExitCode;
+use steps::{Outcome, cargo, execute};
 
 const USAGE: &str = "usage: cargo xtask <command>
 
@@ -33,6 +34,9 @@ commands:
              docs/bench/instructions.csv: counted instructions, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
+  mutants [--first N] [--minutes M] [--again] [--list]
+             docs/mutants.csv: 300 small wrong changes of core, one at a time, and which test notices each (three hours;
+             goes on where it was cut off)
   symbols    include/nekton.symbols from ffi/src
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
@@ -58,6 +62,7 @@ fn main() -> ExitCode {
         ["bench-counts"] => counts::write(),
         ["firmware"] => firmware::run(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
+        ["mutants", options @ ..] => mutants(options),
         ["prelink"] => archive::write_prelinked(),
         ["symbols"] => archive::write_symbols(),
         ["c"] => c::run(),
@@ -79,4 +84,10 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// The program of `tests/mutants`, which needs a parser of Rust that nothing else does.
+fn mutants(options: &[&str]) -> ExitCode {
+    let outcome = execute(cargo(&["run", "--quiet", "--package", "nekton-mutants", "--"]).args(options));
+    if matches!(outcome, Outcome::Passed) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
