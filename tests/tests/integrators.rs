@@ -274,3 +274,24 @@ fn times_of_fixed_steps_are_counted_not_summed() {
         }
     }
 }
+
+#[test]
+fn gauss6_takes_fewer_evaluations_where_it_knows_the_last_step() {
+    // Stages extrapolated from the last step are close to those of the next; without a past the iteration begins farther away.
+    let links = paper_ellipse(32);
+    let bodies = two_ellipses(&links);
+    let count = |forget: bool| {
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, Method::Gauss6 { step: 0.05 });
+        let mut sim = sim.view();
+        for _ in 0..20 {
+            if forget {
+                sim.restart();
+            }
+            sim.step().unwrap();
+        }
+        sim.counters().evaluations
+    };
+    let (known, forgotten) = (count(false), count(true));
+    println!("{known} of {forgotten}");
+    assert!(10 * known <= 8 * forgotten, "{known} of {forgotten}");
+}

@@ -237,3 +237,25 @@ fn what_rounding_of_coordinates_may_do_to_a_distant_pair_is_told() {
     let rounding = f64::EPSILON * (alpha + 2.0) * (distance + radius) / radius;
     assert_near(100.0 * sim.indicators().unwrap().repulsion / rounding, 1.0, 0.1);
 }
+
+#[test]
+fn the_indicator_does_not_depend_on_the_unit_of_length() {
+    // A power of two changes no digit; moments count as forces at the reach of their own body.
+    let told = |unit: f64| {
+        [([1.0, 0.2], [0.3, 0.2]), ([0.2, 0.3], [1.0, 0.2])].map(|axes: ([f64; 2], [f64; 2])| {
+            let oval = |[a, b]: [f64; 2], nodes| [link(Shape::Ellipse { a: a * unit, b: b * unit }, 1.0, nodes)];
+            let links = [oval(axes.0, 16), oval(axes.1, 16)];
+            let bodies =
+                [body(&links[0], [0.0; 3], [0.0; 3]), body(&links[1], [0.7 * unit, 1.1 * unit, 0.9], [0.0; 3])];
+            let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 1.0 });
+            let quadrature = Quadrature::Plain;
+            let mut sim = at_start(&Scene { repulsion, quadrature, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+            sim.view().indicators().unwrap().repulsion
+        })
+    };
+    let exact = told(1.0);
+    assert!(exact.iter().all(|told| *told > 1e-9), "{exact:?}");
+    for unit in [1.0 / 1024.0, 1024.0] {
+        assert_close(&told(unit), &exact, 1e-9);
+    }
+}

@@ -14,6 +14,8 @@ pub struct Mutant {
     /// With the type that it belongs to.
     pub function: String,
     pub line: usize,
+    /// Of the piece, from 1.
+    pub column: usize,
     pub kind: &'static str,
     /// The whole line.
     pub code: String,
@@ -88,11 +90,13 @@ impl Finder<'_> {
     }
 
     fn add(&mut self, span: Span, kind: &'static str, form: Form, after: String) {
-        let (range, line) = (span.byte_range(), span.start().line);
+        let (range, start) = (span.byte_range(), span.start());
+        let line = start.line;
         self.found.push(Mutant {
             file: self.file.into(),
             function: self.place.join("::"),
             line,
+            column: start.column + 1,
             kind,
             code: plain(self.text.lines().nth(line - 1).unwrap_or_default()),
             before: if form == Form::Insertion { String::new() } else { plain(self.source(span)) },
@@ -175,13 +179,8 @@ fn another(lit: &Lit) -> Option<String> {
     match lit {
         Lit::Float(x) => {
             let value: f64 = x.base10_parse().ok()?;
-            Some(if value == 0.0 || value == 2.0 {
-                format!("1.0{}", x.suffix())
-            } else if value == 0.5 {
-                format!("1.0{}", x.suffix())
-            } else {
-                format!("(2.0{} * {x})", x.suffix())
-            })
+            let one = [0.0, 0.5, 2.0].contains(&value);
+            Some(if one { format!("1.0{}", x.suffix()) } else { format!("(2.0{} * {x})", x.suffix()) })
         }
         Lit::Int(x) => Some(format!("{}{}", x.base10_parse::<u64>().ok()?.checked_add(1)?, x.suffix())),
         _ => None,

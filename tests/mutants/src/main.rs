@@ -20,7 +20,7 @@ const USAGE: &str = "usage: cargo xtask mutants [--first N] [--minutes M] [--aga
 
   --first N    only the first N changes of the sample, as a trial; docs/mutants.csv is not written
   --minutes M  begin no change after M minutes (the next call goes on)
-  --again      try again what survived, as after a change of the tests
+  --again      try again what survived, by all tests (else by those that are new)
   --list       print the sample and try nothing
 ";
 
@@ -97,7 +97,7 @@ fn run(folders: &Folders, options: &Options) -> Result<bool, String> {
         }
         return Ok(true);
     }
-    let tests = trial::tests(folders, &chosen)?;
+    let tests = trial::tests(folders)?;
     let mut results = table::Results::read(&folders.work.join("results.csv"), &order, &tests)?;
     if options.again {
         results.forget_survivors();

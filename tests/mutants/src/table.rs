@@ -14,16 +14,15 @@ pub enum Outcome {
     Killed(String),
     /// This test does not end in its time.
     Stuck(String),
-    /// All tests that pass its switch succeed; how many.
-    Survived(usize),
+    /// All tests that pass its switch succeed; how many, and when (s since 1970) the first of them was begun.
+    Survived(usize, u64),
 }
 
 /// What is known, by number; written down at once.
 pub struct Results {
     path: PathBuf,
-    /// Of core and of the tests: a survivor of other tests may not survive these.
+    /// Of core.
     stamp: String,
-    tests: String,
     pub known: BTreeMap<usize, Outcome>,
 }
 
@@ -31,10 +30,9 @@ impl Results {
     /// What was found in earlier runs of the same core.
     pub fn read(path: &Path, order: &Order, tests: &Tests) -> Result<Self, String> {
         let stamp = format!("{:016x}", order.hash);
-        let hash = format!("{:016x}", tests.hash);
         let mut known = BTreeMap::new();
         for row in std::fs::read_to_string(path).unwrap_or_default().lines().map(fields) {
-            let [of, by, id, word, rest] = row.as_slice() else { continue };
+            let [of, id, word, rest, begun] = row.as_slice() else { continue };
             let Ok(id) = id.parse() else { continue };
             if *of != stamp {
                 continue;
@@ -43,26 +41,28 @@ impl Results {
             match word.as_str() {
                 "killed" if exists => known.insert(id, Outcome::Killed(rest.clone())),
                 "stuck" if exists => known.insert(id, Outcome::Stuck(rest.clone())),
-                "survived" if *by == hash => known.insert(id, Outcome::Survived(rest.parse().unwrap_or(0))),
-                _ => None,
+                "survived" => {
+                    known.insert(id, Outcome::Survived(rest.parse().unwrap_or(0), begun.parse().unwrap_or(0)))
+                }
+                _ => known.remove(&id),
             };
         }
-        Ok(Results { path: path.into(), stamp, tests: hash, known })
+        Ok(Results { path: path.into(), stamp, known })
     }
 
-    /// They are tried again.
+    /// They are tried again, by all tests.
     pub fn forget_survivors(&mut self) {
-        self.known.retain(|_, outcome| !matches!(outcome, Outcome::Survived(_)));
+        self.known.retain(|_, outcome| !matches!(outcome, Outcome::Survived(..)));
     }
 
     /// Adds one, in memory and on disk.
     pub fn add(&mut self, id: usize, outcome: Outcome) -> Result<(), String> {
-        let (word, rest) = match &outcome {
-            Outcome::Killed(test) => ("killed", test.clone()),
-            Outcome::Stuck(test) => ("stuck", test.clone()),
-            Outcome::Survived(count) => ("survived", count.to_string()),
+        let (word, rest, begun) = match &outcome {
+            Outcome::Killed(test) => ("killed", test.clone(), String::new()),
+            Outcome::Stuck(test) => ("stuck", test.clone(), String::new()),
+            Outcome::Survived(count, begun) => ("survived", count.to_string(), begun.to_string()),
         };
-        let row = line(&[&self.stamp, &self.tests, &id.to_string(), word, &rest]);
+        let row = line(&[&self.stamp, &id.to_string(), word, &rest, &begun]);
         let mut file = std::fs::OpenOptions::new()
             .create(true)
             .append(true)
@@ -101,11 +101,11 @@ pub fn fields(row: &str) -> Vec<String> {
     out
 }
 
-/// What a line of the hand-written list is recognized by: file, function, code of the line, change.
-type Key = [String; 4];
+/// What a line of the hand-written list is recognized by: file, function, code of the line, column, change.
+type Key = [String; 5];
 
 fn key(m: &Mutant) -> Key {
-    [m.file.clone(), m.function.clone(), m.code.clone(), m.change()]
+    [m.file.clone(), m.function.clone(), m.code.clone(), m.column.to_string(), m.change()]
 }
 
 /// The hand-written list of changes that change nothing, with reasons.
@@ -113,14 +113,12 @@ pub fn equivalents(path: &Path) -> Result<BTreeMap<Key, String>, String> {
     let text = read(path)?;
     let mut out = BTreeMap::new();
     for (k, row) in text.lines().enumerate().skip(1) {
-        let fields = fields(row);
-        let [file, function, code, change, reason] = fields.as_slice() else {
-            return Err(format!("{}: line {} has not 5 fields", path.display(), k + 1));
+        let mut fields = fields(row);
+        let reason = fields.pop().filter(|reason| !reason.is_empty());
+        let (Some(reason), Ok(key)) = (reason, Key::try_from(fields)) else {
+            return Err(format!("{}: line {} has not 6 fields, the last a reason", path.display(), k + 1));
         };
-        if reason.is_empty() {
-            return Err(format!("{}: line {} gives no reason", path.display(), k + 1));
-        }
-        out.insert([file.clone(), function.clone(), code.clone(), change.clone()], reason.clone());
+        out.insert(key, reason);
     }
     Ok(out)
 }
@@ -170,8 +168,8 @@ impl<'a> Report<'a> {
                     sums[0] += 1;
                     sums[1] += 1;
                 }
-                Some(Outcome::Survived(_)) if reason.is_some() => sums[3] += 1,
-                Some(Outcome::Survived(_)) => sums[2] += 1,
+                Some(Outcome::Survived(..)) if reason.is_some() => sums[3] += 1,
+                Some(Outcome::Survived(..)) => sums[2] += 1,
                 None => {}
             }
         }
@@ -192,15 +190,28 @@ impl<'a> Report<'a> {
         for (m, outcome, reason) in &self.rows {
             let kind = kinds.entry(m.kind).or_default();
             match (outcome, reason) {
-                (Some(Outcome::Survived(tests)), None) => {
+                (Some(Outcome::Survived(tests, _)), None) => {
                     kind[1] += 1;
-                    println!("survived {tests} tests: {}:{} {}: {}", m.file, m.line, m.function, m.change());
+                    println!(
+                        "survived {tests} tests: {}:{}:{} {}: {}",
+                        m.file,
+                        m.line,
+                        m.column,
+                        m.function,
+                        m.change()
+                    );
                     println!("    {}", m.code);
                 }
                 (Some(Outcome::Killed(test) | Outcome::Stuck(test)), reason) => {
                     kind[0] += 1;
                     if reason.is_some() {
-                        println!("listed as equivalent, but {test} fails: {}:{} {}", m.file, m.line, m.change());
+                        println!(
+                            "listed as equivalent, but {test} fails: {}:{}:{} {}",
+                            m.file,
+                            m.line,
+                            m.column,
+                            m.change()
+                        );
                     }
                 }
                 _ => {}
@@ -222,7 +233,7 @@ impl<'a> Report<'a> {
 
     /// docs/mutants.csv.
     pub fn csv(&self) -> String {
-        let mut out = line(&["file", "line", "function", "kind", "code", "change", "result", "by"]);
+        let mut out = line(&["file", "line", "column", "function", "kind", "code", "change", "result", "by"]);
         for (m, outcome, reason) in &self.rows {
             let survived = |tests: &usize| match (reason, tests) {
                 (Some(reason), _) => ("equivalent", (*reason).clone()),
@@ -232,10 +243,11 @@ impl<'a> Report<'a> {
             let (word, by) = match outcome {
                 Some(Outcome::Killed(test)) => ("killed", test.clone()),
                 Some(Outcome::Stuck(test)) => ("killed by time", test.clone()),
-                Some(Outcome::Survived(tests)) => survived(tests),
+                Some(Outcome::Survived(tests, _)) => survived(tests),
                 None => ("not tried", String::new()),
             };
-            out += &line(&[&m.file, &m.line.to_string(), &m.function, m.kind, &m.code, &m.change(), word, &by]);
+            let [row, column] = [m.line, m.column].map(|n| n.to_string());
+            out += &line(&[&m.file, &row, &column, &m.function, m.kind, &m.code, &m.change(), word, &by]);
         }
         out
     }

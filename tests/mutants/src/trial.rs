@@ -3,13 +3,14 @@
 use crate::Folders;
 use crate::build::cargo;
 use crate::find::Mutant;
-use crate::sample::{Order, fold, read, walk};
+use crate::sample::{Order, read};
 use crate::table::{Outcome, Results, fields, line};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Changes tried at the same time.
 const WORKERS: usize = 2;
@@ -18,6 +19,10 @@ const LONGEST: Duration = Duration::from_secs(60);
 /// What a run may take of memory, KiB: a change must not fill the machine.
 const MEMORY: &str = "4000000";
 
+/// How a process ends that has used its time.
+const SIGXCPU: i32 = 24;
+const SIGKILL: i32 = 9;
+
 /// A test of a test program.
 #[derive(Clone)]
 pub struct Test {
@@ -25,6 +30,9 @@ pub struct Test {
     /// Of the program, without its hash.
     binary: String,
     name: String,
+    /// When it was built, s since 1970.
+    built: u64,
+    /// Of the processor.
     seconds: f64,
     passes: BTreeSet<usize>,
 }
@@ -35,10 +43,14 @@ impl Test {
     }
 }
 
-/// All tests that are used, and a hash of their sources.
+/// All tests that are used.
 pub struct Tests {
     pub all: Vec<Test>,
-    pub hash: u64,
+}
+
+/// Seconds since 1970.
+fn seconds(time: SystemTime) -> u64 {
+    time.duration_since(SystemTime::UNIX_EPOCH).map_or(0, |time| time.as_secs())
 }
 
 /// How a test ended.
@@ -49,10 +61,12 @@ enum Ended {
     TooLong,
 }
 
-/// One test with a change switched on, or with its switches counted.
+/// One test with a change switched on, or with its switches counted. The limit is of the processor's time, since other
+/// programs may be busy as well; one that sleeps is ended as well, long after.
 fn run_test(test: &Test, mutant: &str, cover: Option<&Path>, limit: Duration) -> Result<Ended, String> {
     let mut command = Command::new("nice");
-    command.args(["sh", "-c", &format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\"")]).arg(&test.program);
+    let bounded = format!("ulimit -v {MEMORY}; ulimit -t {}; exec \"$0\" \"$@\"", limit.as_secs() + 1);
+    command.args(["sh", "-c", &bounded]).arg(&test.program);
     command.args(["--exact", &test.name, "--test-threads", "1", "--quiet"]);
     command.env("NEKTON_MUTANT", mutant).env("RUST_BACKTRACE", "0");
     if let Some(cover) = cover {
@@ -63,9 +77,14 @@ fn run_test(test: &Test, mutant: &str, cover: Option<&Path>, limit: Duration) ->
     let mut pause = Duration::from_millis(1);
     loop {
         if let Some(status) = child.try_wait().map_err(|error| error.to_string())? {
-            return Ok(if status.success() { Ended::Passed } else { Ended::Failed });
+            let out_of_time = matches!(status.signal(), Some(SIGXCPU | SIGKILL));
+            return Ok(match (status.success(), out_of_time) {
+                (true, _) => Ended::Passed,
+                (false, true) => Ended::TooLong,
+                (false, false) => Ended::Failed,
+            });
         }
-        if start.elapsed() > limit {
+        if start.elapsed() > 20 * limit {
             let _ = child.kill();
             let _ = child.wait();
             return Ok(Ended::TooLong);
@@ -76,7 +95,7 @@ fn run_test(test: &Test, mutant: &str, cover: Option<&Path>, limit: Duration) ->
 }
 
 /// Builds the test programs of the copy, and runs every test once without any change.
-pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
+pub fn tests(folders: &Folders) -> Result<Tests, String> {
     println!("building the tests");
     let start = Instant::now();
     let output =
@@ -96,6 +115,7 @@ pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
     for program in programs {
         let stem = program.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let binary = stem.rsplit_once('-').map_or(stem.clone(), |(name, _)| name.into());
+        let built = std::fs::metadata(&program).and_then(|data| data.modified()).map_or(u64::MAX, seconds);
         let listed = Command::new(&program)
             .args(["--list", "--format", "terse"])
             .output()
@@ -103,27 +123,20 @@ pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
         for line in String::from_utf8_lossy(&listed.stdout).lines() {
             if let Some(name) = line.strip_suffix(": test") {
                 let (program, binary) = (program.clone(), binary.clone());
-                all.push(Test { program, binary, name: name.into(), seconds: f64::NAN, passes: BTreeSet::new() });
+                let name = name.into();
+                all.push(Test { program, binary, name, built, seconds: f64::NAN, passes: BTreeSet::new() });
             }
         }
     }
-    let mut hash = chosen.iter().fold(0, |hash, id| fold(hash, &id.to_le_bytes()));
-    for folder in ["tests/src", "tests/tests", "core/tests", "core/src"] {
-        let mut paths = Vec::new();
-        walk(&folders.copy().join(folder), &mut paths)?;
-        paths.sort();
-        for path in paths {
-            hash = fold(hash, read(&path)?.as_bytes());
-        }
-    }
-    let memory = folders.work.join(format!("tests-{hash:016x}.csv"));
+    // What is known of the same program.
+    let memory = folders.work.join("tests.csv");
     let known = read(&memory).unwrap_or_default();
-    let known: BTreeMap<String, (f64, BTreeSet<usize>)> = known
+    let known: BTreeMap<(String, u64), (f64, BTreeSet<usize>)> = known
         .lines()
         .filter_map(|row| match fields(row).as_slice() {
-            [name, seconds, passes] => {
+            [name, built, seconds, passes] => {
                 let passes = passes.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-                Some((name.clone(), (seconds.parse().ok()?, passes)))
+                Some(((name.clone(), built.parse().ok()?), (seconds.parse().ok()?, passes)))
             }
             _ => None,
         })
@@ -136,7 +149,7 @@ pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
             scope.spawn(move || {
                 while let Some(k) = queue.lock().ok().and_then(|mut queue| queue.pop_front()) {
                     let Ok(mut test) = slots[k].lock() else { continue };
-                    if let Some((seconds, passes)) = known.get(&test.name()) {
+                    if let Some((seconds, passes)) = known.get(&(test.name(), test.built)) {
                         (test.seconds, test.passes) = (*seconds, passes.clone());
                         continue;
                     }
@@ -144,8 +157,9 @@ pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
                     let _ = std::fs::remove_file(&cover);
                     let start = Instant::now();
                     let ended = run_test(&test, "cover", Some(&cover), LONGEST);
-                    test.seconds = start.elapsed().as_secs_f64();
-                    let passed = std::fs::read_to_string(&cover).unwrap_or_default();
+                    let told = std::fs::read_to_string(&cover).unwrap_or_default();
+                    let (spent, passed) = told.split_once('\n').unwrap_or_default();
+                    test.seconds = spent.parse().map_or(start.elapsed().as_secs_f64(), |spent: f64| spent / 100.0);
                     test.passes = passed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
                     if ended == Ok(Ended::TooLong) {
                         println!("left out, since it takes longer than {} s: {}", LONGEST.as_secs(), test.name());
@@ -166,11 +180,11 @@ pub fn tests(folders: &Folders, chosen: &[usize]) -> Result<Tests, String> {
     let all: Vec<Test> = slots.into_iter().filter_map(|slot| slot.into_inner().ok()).collect();
     let rows = all.iter().map(|test| {
         let passes: Vec<String> = test.passes.iter().map(usize::to_string).collect();
-        line(&[&test.name(), &format!("{:.4}", test.seconds), &passes.join(" ")])
+        line(&[&test.name(), &test.built.to_string(), &format!("{:.4}", test.seconds), &passes.join(" ")])
     });
     std::fs::write(&memory, rows.collect::<String>()).map_err(|error| format!("{}: {error}", memory.display()))?;
     println!("{} tests take {:.0} s", all.len(), all.iter().map(|test| test.seconds).sum::<f64>());
-    Ok(Tests { all, hash })
+    Ok(Tests { all })
 }
 
 /// How often tests noticed anything, in all and in one file: what to try first.
@@ -195,9 +209,11 @@ impl Luck {
     }
 }
 
-/// Tries one change.
-fn one(id: usize, mutant: &Mutant, tests: &Tests, luck: &Mutex<Luck>) -> Result<Outcome, String> {
-    let mut order: Vec<&Test> = tests.all.iter().filter(|test| test.passes.contains(&id)).collect();
+/// Tries one change by the tests that were built since the time `tried`.
+fn one(id: usize, mutant: &Mutant, tests: &Tests, tried: u64, luck: &Mutex<Luck>) -> Result<Outcome, String> {
+    let begun = seconds(SystemTime::now());
+    let passing = || tests.all.iter().filter(|test| test.passes.contains(&id));
+    let mut order: Vec<&Test> = passing().filter(|test| test.built >= tried).collect();
     if let Ok(luck) = luck.lock() {
         order.sort_by(|a, b| luck.cost(a, &mutant.file).total_cmp(&luck.cost(b, &mutant.file)));
     }
@@ -213,7 +229,7 @@ fn one(id: usize, mutant: &Mutant, tests: &Tests, luck: &Mutex<Luck>) -> Result<
         }
         return Ok(if ended == Ended::Failed { Outcome::Killed(name) } else { Outcome::Stuck(name) });
     }
-    Ok(Outcome::Survived(order.len()))
+    Ok(Outcome::Survived(passing().count(), begun))
 }
 
 /// Tries every change that is not known, until `end`.
@@ -224,7 +240,13 @@ pub fn run(
     results: &mut Results,
     end: Option<Instant>,
 ) -> Result<(), String> {
-    let left: VecDeque<usize> = chosen.iter().copied().filter(|id| !results.known.contains_key(id)).collect();
+    // Of what survived, those that a test passes which was built since.
+    let due = |id: &usize| match results.known.get(id) {
+        None => true,
+        Some(Outcome::Survived(_, tried)) => tests.all.iter().any(|t| t.built >= *tried && t.passes.contains(id)),
+        Some(_) => false,
+    };
+    let left: VecDeque<usize> = chosen.iter().copied().filter(due).collect();
     let (start, count) = (Instant::now(), left.len());
     println!("{} of {} are known, {count} are tried", chosen.len() - count, chosen.len());
     let mut luck = Luck::default();
@@ -242,18 +264,23 @@ pub fn run(
                     let Some(id) = queue.lock().ok().and_then(|mut queue| queue.pop_front()) else { break };
                     let mutant = &order.mutants[id];
                     let begin = Instant::now();
-                    let told = one(id, mutant, tests, luck).and_then(|outcome| {
+                    let tried = match results.lock().ok().and_then(|results| results.known.get(&id).cloned()) {
+                        Some(Outcome::Survived(_, tried)) => tried,
+                        _ => 0,
+                    };
+                    let told = one(id, mutant, tests, tried, luck).and_then(|outcome| {
                         let word = match &outcome {
                             Outcome::Killed(test) => format!("killed by {test}"),
                             Outcome::Stuck(test) => format!("killed by the time of {test}"),
-                            Outcome::Survived(count) => format!("SURVIVED {count} tests"),
+                            Outcome::Survived(count, _) => format!("SURVIVED {count} tests"),
                         };
                         println!(
-                            "{:5.0} s {:5.1} s  {}:{} {}: {word}",
+                            "{:5.0} s {:5.1} s  {}:{}:{} {}: {word}",
                             start.elapsed().as_secs_f64(),
                             begin.elapsed().as_secs_f64(),
                             mutant.file,
                             mutant.line,
+                            mutant.column,
                             mutant.change(),
                         );
                         results.lock().map_err(|error| error.to_string())?.add(id, outcome)
