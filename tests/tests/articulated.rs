@@ -335,3 +335,74 @@ fn shortcut_for_a_lone_swimmer_agrees_with_the_general_path() {
         assert_close(&short, &general, 1e-10);
     }
 }
+
+#[test]
+fn acceleration_of_a_slider_on_a_turning_link_is_that_of_its_closed_form() {
+    // r = r₀ + R(θ) (h + u a) − R(θ + α) o with θ(t) and u(t) given: both derivatives by the product rule, in complex numbers.
+    let turn = [Harmonic { amplitude: 0.8, frequency: 1.3, phase: 0.4, offset: 0.2 }];
+    let slide = [Harmonic { amplitude: 0.4, frequency: 2.0, phase: 1.0, offset: 2.5 }];
+    let wave = |h: &Harmonic<f64>, t: f64| {
+        let (s, c) = (h.frequency * t + h.phase).sin_cos();
+        [h.offset + h.amplitude * s, h.amplitude * h.frequency * c, -h.amplitude * h.frequency.powi(2) * s]
+    };
+    let (parent, own, angle) = ([0.1, -0.2], [0.3, 0.2], 0.3);
+    let joint = Joint {
+        parent: 0,
+        kind: JointKind::Slider { axis: [3.0, 4.0], angle },
+        parent_anchor: parent,
+        self_anchor: own,
+        drive: Drive::Motion(Signal::Harmonic { terms: &slide, window: None }),
+    };
+    // A third link that is free makes the motion of the other two part of an equation.
+    let free = hinged(segment(1.0, 16), 1, [-ANCHOR, 0.0], [ANCHOR, 0.0], torque(Signal::Constant(0.0), [0.2, 0.1]));
+    let links = [segment(1.0, 16), Link { joint: Some(joint), ..segment(3.0, 16) }, free];
+    let still = Signal::Constant(0.0);
+    let root = Root::Prescribed([still, still, Signal::Harmonic { terms: &turn, window: None }]);
+    let bodies = [Body { root, ..body(&links, [0.3, -0.2, 0.4], [0.0; 3]) }];
+    let mut sim = at_start(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) });
+    let mut sim = sim.view();
+    let turned = |[x, y]: [f64; 2], angle: f64| {
+        let (s, c) = angle.sin_cos();
+        [c * x - s * y, s * x + c * y]
+    };
+    for t in [0.0, 0.7, 1.9] {
+        let y = sim.state().to_vec();
+        sim.set_state(t, &y).unwrap();
+        let ([theta, spin, twist], [u, rate, growth]) = (wave(&turn[0], t), wave(&slide[0], t));
+        let heading = 0.4 + theta;
+        let axis = turned([0.6, 0.8], heading);
+        let (h, o) = (turned(parent, heading), turned(own, heading + angle));
+        // What turns with the parent: h + u a − o.
+        let arm = [0, 1].map(|k| h[k] + u * axis[k] - o[k]);
+        let perp = |v: [f64; 2]| [-v[1], v[0]];
+        let (across, turning) = (perp(axis), perp(arm));
+        let exact = [0, 1]
+            .map(|k| growth * axis[k] + 2.0 * spin * rate * across[k] + twist * turning[k] - spin * spin * arm[k]);
+        let accelerations = vector(&mut sim, |sim, out| sim.accelerations(out));
+        assert_close(&accelerations[3..6], &[exact[0], exact[1], twist], 1e-14);
+        let velocity = [0, 1].map(|k| rate * axis[k] + spin * turning[k]);
+        assert_close(&sim.velocities()[3..6], &[velocity[0], velocity[1], spin], 1e-14);
+    }
+}
+
+#[test]
+fn shortcut_for_a_lone_swimmer_with_a_slider_agrees_with_the_general_path() {
+    // The one integrates velocities that follow from the impulse, the other accelerations.
+    let joint = Joint {
+        parent: 0,
+        kind: JointKind::Slider { axis: [3.0, 4.0], angle: 0.3 },
+        parent_anchor: [0.1, 0.0],
+        self_anchor: [0.0, 0.2],
+        drive: Drive::Motion(Signal::Harmonic {
+            terms: &[Harmonic { amplitude: 0.4, frequency: 2.0, phase: 0.0, offset: 2.5 }],
+            window: None,
+        }),
+    };
+    let links = [segment(1.0, 32), Link { joint: Some(joint), ..segment(3.0, 32) }];
+    for density in [0.0, 1.0] {
+        let bodies = [body(&links, [0.0; 3], [0.1, -0.2, 0.8])];
+        let [short, general] = both_ways(&Scene { bodies: &bodies, ..Scene::new(density, 0.0) }, 1.3);
+        println!("{:.1e}", difference(&short, &general));
+        assert_close(&short, &general, 1e-9);
+    }
+}

@@ -1,7 +1,7 @@
 //! What the motion conserves, and what it does not.
 
 use nekton::Sim;
-use nekton::scene::{Body, Drive, Harmonic, Link, Quadrature, Repulsion, Scene, Shape, Signal, Wall, Window};
+use nekton::scene::{Body, Drive, Harmonic, Link, Quadrature, Repulsion, Root, Scene, Shape, Signal, Wall, Window};
 use nekton_tests::*;
 
 const OBSTACLES: [Wall<'static, f64>; 2] = [
@@ -300,4 +300,44 @@ fn rate_of_the_energy_is_the_power_of_the_joints() {
     }
     let slope = (45.0 * (energy[4] - energy[2]) - 9.0 * (energy[5] - energy[1]) + (energy[6] - energy[0])) / (60.0 * h);
     assert_close(&[slope], &[power], 1e-7);
+}
+
+#[test]
+fn work_on_a_led_disc_is_the_energy_that_it_gains() {
+    // ½ (m + ρπa²) v² + ½ I ω² + (m − m_f) g y, from rest: led up to speed, along, up, and round.
+    let (radius, density, gravity, t) = (0.5_f64, 1.4, 2.0, 1.0);
+    let area = std::f64::consts::PI * radius * radius;
+    let path = |rate: f64| [[0.0, 0.0, 0.0, rate], [2.0, 2.0 * rate, 2.0 * rate, rate]];
+    let (along, up, round) = (path(0.7), path(0.4), path(-1.1));
+    let root = Root::Prescribed([Signal::Table(&along), Signal::Table(&up), Signal::Table(&round)]);
+    let links = [link(disc(radius), density, 16)];
+    let bodies = [Body { root, ..body(&links, [0.0; 3], [0.0; 3]) }];
+    let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, gravity) }, adams(1e-11));
+    let mut sim = sim.view();
+    sim.advance(t).unwrap();
+    let inertia = 0.5 * density * area * radius * radius;
+    let kinetic = 0.5 * ((density + 1.0) * area * (0.7 * 0.7 + 0.4 * 0.4) + inertia * 1.1 * 1.1) * t * t;
+    let lifted = (density - 1.0) * area * gravity * 0.5 * 0.4 * t * t;
+    assert_close(&[sim.energy().unwrap().work], &[kinetic + lifted], 1e-10);
+}
+
+#[test]
+fn energy_of_led_bodies_changes_by_the_work_of_their_roots_and_joints() {
+    let wave = [Harmonic { amplitude: 0.3, frequency: 2.0, phase: 0.5, offset: 0.1 }];
+    let signal = Signal::Harmonic { terms: &wave, window: None };
+    let one = link(Shape::Ellipse { a: 0.5, b: 0.2 }, 1.2, 64);
+    let free =
+        Drive::Torque { torque: Signal::Constant(0.2), stiffness: 0.0, damping: 0.0, rest: 0.0, start: [0.2, 0.0] };
+    let links = [
+        one,
+        hinged(one, 0, [-0.7, 0.0], [0.7, 0.0], Drive::Motion(signal)),
+        hinged(one, 1, [-0.7, 0.0], [0.7, 0.0], free),
+    ];
+    let root = Root::Prescribed([signal, Signal::Constant(0.1), signal]);
+    let obstacles = [wall(disc(0.4), [-0.4, 1.6], 0.0, 64)];
+    let other = [link(disc(0.3), 0.8, 64)];
+    let bodies = [Body { root, ..body(&links, [0.8, 0.0, 0.0], [0.0; 3]) }, body(&other, [2.2, 0.2, 0.0], [0.0; 3])];
+    let scene = Scene { obstacles: &obstacles, bodies: &bodies, ..Scene::new(1.0, 0.3) };
+    let (drift, kinetic) = drift(&mut simulation(&scene, adams(1e-10)).view(), 0.8);
+    assert!(drift <= 5e-9 * kinetic, "{drift:e} of {kinetic:e}");
 }

@@ -292,3 +292,81 @@ fn error_of_random_scenes_without_circulation_is_within_the_bound_also_of_accele
     let [mass_or_force, acceleration] = summary.largest[0];
     assert!(mass_or_force <= 100.0 && acceleration <= 100.0, "{}", summary.table);
 }
+
+/// Nodes of an ellipse with half-axes `a`, `b` at `pose`: point, and outward normal times its length.
+fn outline([a, b]: [f64; 2], [x, y, turn]: [f64; 3], n: usize) -> Vec<([f64; 2], [f64; 2])> {
+    let (sin, cos) = turn.sin_cos();
+    let turned = |u: f64, v: f64| [cos * u - sin * v, sin * u + cos * v];
+    let h = std::f64::consts::TAU / n as f64;
+    (0..n)
+        .map(|k| {
+            let (s, c) = (h * k as f64).sin_cos();
+            let (p, m) = (turned(a * c, b * s), turned(h * b * c, h * a * s));
+            ([x + p[0], y + p[1]], m)
+        })
+        .collect()
+}
+
+/// Largest error of the constant density by the trapezoidal rule, with a double layer written down here: (1 − K/π) 1 = 2,
+/// K = ∫ (x′ − x)·n′/|x′ − x|² ds′ with n′ into the bodies and −½ curvature on the diagonal.
+fn constant_error(ovals: &[([f64; 2], [f64; 3])], n: usize) -> f64 {
+    let nodes: Vec<_> = ovals.iter().flat_map(|(axes, pose)| outline(*axes, *pose, n)).collect();
+    let all = nodes.len();
+    let columns: Vec<Vec<f64>> = (0..all)
+        .map(|j| {
+            (0..all)
+                .map(|i| {
+                    let (([x, y], _), ([u, v], m)) = (nodes[i], nodes[j]);
+                    let kernel = if i == j {
+                        // Curvature ab/speed³ times ds.
+                        let ([a, b], h) = (ovals[j / n].0, std::f64::consts::TAU / n as f64);
+                        let length = f64::hypot(m[0], m[1]);
+                        -0.5 * a * b * h.powi(3) / (length * length)
+                    } else {
+                        let d = [u - x, v - y];
+                        -(d[0] * m[0] + d[1] * m[1]) / (d[0] * d[0] + d[1] * d[1])
+                    };
+                    f64::from(u8::from(i == j)) - kernel / std::f64::consts::PI
+                })
+                .collect()
+        })
+        .collect();
+    solve(&columns, &vec![2.0; all]).iter().fold(0.0, |m, x| m.max((x - 1.0).abs()))
+}
+
+#[test]
+fn indicator_of_quadrature_is_the_error_of_the_constant_density() {
+    let ovals = [([1.0, 0.3], [0.0, 0.0, 0.3]), ([0.7, 0.4], [1.0, 1.3, -0.4])];
+    for count in [1, 2] {
+        for (nodes, shortcuts) in [(16, true), (16, false), (24, false)] {
+            let links = ovals.map(|(axes, _)| [link(Shape::Ellipse { a: axes[0], b: axes[1] }, 1.0, nodes)]);
+            let bodies = [body(&links[0], ovals[0].1, [0.1, 0.2, 0.3]), body(&links[1], ovals[1].1, [0.0; 3])];
+            let bodies = &bodies[..count];
+            let scene = Scene { bodies, quadrature: Quadrature::Plain, shortcuts, ..Scene::new(1.0, 0.0) };
+            let mut sim = at_start(&scene);
+            let mut sim = sim.view();
+            let exact = constant_error(&ovals[..count], nodes);
+            assert!(exact > 1e-9, "{exact:e}: nothing to compare");
+            for told in [sim.indicators().unwrap().quadrature, sim.resolution().unwrap().quadrature] {
+                assert_near(told / exact, 1.0, 1e-6);
+            }
+        }
+    }
+}
+
+#[test]
+fn indicator_of_circulation_is_ten_times_the_error_of_its_fluxes() {
+    // The trapezoidal rule on a circle of radius a gives the flux of a vortex at distance d outside of it as
+    // −γ aᴺ/(dᴺ − aᴺ) instead of 0 where a node lies on the line of centres. The vortex is in a small disc beside a large one.
+    let (nodes, radius, distance, gamma) = (16, 0.02, 1.52_f64, 0.7);
+    let links =
+        [[nekton::scene::Link { circulation: gamma, ..link(disc(radius), 1.0, nodes) }], [link(disc(1.0), 1.0, nodes)]];
+    let bodies = [body(&links[0], [0.0; 3], [0.0; 3]), body(&links[1], [distance, 0.0, 0.0], [0.0; 3])];
+    let mut sim = at_start(&Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) });
+    let mut sim = sim.view();
+    let exact = 10.0 / (distance.powi(nodes as i32) - 1.0);
+    let constant = constant_error(&[([radius; 2], [0.0; 3]), ([1.0; 2], [distance, 0.0, 0.0])], nodes);
+    assert!(exact > 1.5 * constant, "{exact:e} is hidden by {constant:e}");
+    assert_near(sim.resolution().unwrap().quadrature / exact, 1.0, 1e-8);
+    assert_near(sim.indicators().unwrap().quadrature / exact, 1.0, 1e-8);
+}

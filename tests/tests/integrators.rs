@@ -222,3 +222,76 @@ fn estimated_time_errors_tell_lengths_and_angles_within_a_known_factor() {
         assert!(sim.time_error().length.is_nan() && sim.time_error().angle.is_nan() && sim.time_error().unknown == 2);
     });
 }
+
+#[test]
+fn sums_of_time_errors_are_sums_of_what_every_step_tells() {
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, adams(1e-7)] {
+        crawler(1.0, method, |sim| {
+            let mut sums = [0.0; 4];
+            let (mut unknown, mut told) = (0, 0);
+            for _ in 0..30 {
+                sim.step().unwrap();
+                let e = sim.time_error();
+                if e.unknown > unknown {
+                    unknown = e.unknown;
+                    continue;
+                }
+                told += 1;
+                for (sum, error) in sums.iter_mut().zip([e.length, e.angle, e.speed, e.spin]) {
+                    assert!(error > 0.0, "{method:?}: {e:?}");
+                    *sum += error;
+                }
+            }
+            let e = sim.time_error();
+            assert!(told >= 20, "{method:?}: {told}");
+            assert_eq!(unknown + told, 30);
+            for (told, sum) in [e.length_sum, e.angle_sum, e.speed_sum, e.spin_sum].into_iter().zip(sums) {
+                assert_near(told / sum, 1.0, 1e-14);
+            }
+        });
+    }
+}
+
+#[test]
+fn times_of_fixed_steps_are_counted_not_summed() {
+    // A sum of n steps 0.1 would be off by some n ulps after n steps; n·h is rounded once.
+    let links = [link(disc(0.5), 1.0, 8)];
+    let bodies = [body(&links, [0.0; 3], [0.1, 0.0, 0.0])];
+    let step = 0.1;
+    for method in FIXED.map(|fixed| fixed(step)) {
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, method);
+        let mut sim = sim.view();
+        for n in 1..=1000 {
+            sim.step().unwrap();
+            assert_eq!(sim.time(), f64::from(n) * step, "{method:?}");
+        }
+        // From a time that is set, the count begins there.
+        let y = sim.state().to_vec();
+        sim.set_state(7.0, &y).unwrap();
+        for n in 1..=300 {
+            sim.step().unwrap();
+            assert_eq!(sim.time(), 7.0 + f64::from(n) * step, "{method:?}");
+        }
+    }
+}
+
+#[test]
+fn gauss6_takes_fewer_evaluations_where_it_knows_the_last_step() {
+    // Stages extrapolated from the last step are close to those of the next; without a past the iteration begins farther away.
+    let links = paper_ellipse(32);
+    let bodies = two_ellipses(&links);
+    let count = |forget: bool| {
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, Method::Gauss6 { step: 0.05 });
+        let mut sim = sim.view();
+        for _ in 0..20 {
+            if forget {
+                sim.restart();
+            }
+            sim.step().unwrap();
+        }
+        sim.counters().evaluations
+    };
+    let (known, forgotten) = (count(false), count(true));
+    println!("{known} of {forgotten}");
+    assert!(10 * known <= 8 * forgotten, "{known} of {forgotten}");
+}

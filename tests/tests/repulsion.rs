@@ -186,3 +186,76 @@ fn without_repulsion_its_indicator_is_exactly_zero() {
         }
     }
 }
+
+#[test]
+fn rounding_of_the_coordinates_is_within_a_hundred_times_the_indicator() {
+    // In single precision a resolved pair at a tiny gap is as wrong as its coordinates are rounded: the same numbers, given to
+    // double precision, have the exact force.
+    let mut largest = 0.0_f64;
+    for (k, gap) in [1e-1_f32, 3e-2, 1e-2, 3e-3, 1e-3].into_iter().enumerate() {
+        for turn in [0.1_f32, 0.7, 1.3, 2.2] {
+            let distance = 2.0 + gap;
+            let (s, c) = (turn + 0.3 * k as f32).sin_cos();
+            let pose = [distance * c, distance * s, turn];
+            let (nodes, alpha) = (96, 6.0_f32);
+            let links = [link(disc(1.0_f32), 1.0, nodes)];
+            let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&links, pose, [0.0; 3])];
+            let repulsion = Some(Repulsion { alpha, epsilon: 1.0 });
+            let mut sim = at_start(&Scene { repulsion, bodies: &bodies, ..Scene::new(0.0_f32, 0.0) });
+            let mut sim = sim.view();
+            let force = vector(&mut sim, |sim, out| sim.repulsion(out));
+            let told = f64::from(sim.indicators().unwrap().repulsion);
+            let links = [link(disc(1.0_f64), 1.0, nodes)];
+            let wide = pose.map(f64::from);
+            let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&links, wide, [0.0; 3])];
+            let repulsion = Some(Repulsion { alpha: 6.0, epsilon: 1.0 });
+            let mut sim = at_start(&Scene { repulsion, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+            let mut sim = sim.view();
+            let exact = vector(&mut sim, |sim, out| sim.repulsion(out));
+            let narrow: Vec<f64> = force.iter().map(|f| f64::from(*f)).collect();
+            let error = difference(&narrow, &exact);
+            println!("gap {gap:.0e}: error {error:.1e}, told {told:.1e}, ratio {:.2}", error / told);
+            largest = largest.max(error / told);
+        }
+    }
+    assert!(largest <= 100.0, "{largest}");
+}
+
+#[test]
+fn what_rounding_of_coordinates_may_do_to_a_distant_pair_is_told() {
+    // Far apart the integrals are exact but for rounding. Coordinates as large as the distance d and the reach a are known to ε
+    // of that, which the force magnifies by α + 2 over a length, here the reach, by which energy is told as a force.
+    let (distance, radius, alpha) = (1e4, 1.0_f64, 4.0);
+    let links = [link(disc(radius), 1.0, 64)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&links, [distance, 0.0, 0.0], [0.0; 3])];
+    let repulsion = Some(Repulsion { alpha, epsilon: 1.0 });
+    let mut sim = at_start(&Scene { repulsion, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+    let mut sim = sim.view();
+    let force = f64::abs(vector(&mut sim, |sim, out| sim.repulsion(out))[0]);
+    let energy = sim.energy().unwrap().repulsion;
+    assert!(force < energy / radius);
+    let rounding = f64::EPSILON * (alpha + 2.0) * (distance + radius) / radius;
+    assert_near(100.0 * sim.indicators().unwrap().repulsion / rounding, 1.0, 0.1);
+}
+
+#[test]
+fn the_indicator_does_not_depend_on_the_unit_of_length() {
+    // A power of two changes no digit; moments count as forces at the reach of their own body.
+    let told = |unit: f64| {
+        [([1.0, 0.2], [0.3, 0.2]), ([0.2, 0.3], [1.0, 0.2])].map(|axes: ([f64; 2], [f64; 2])| {
+            let oval = |[a, b]: [f64; 2], nodes| [link(Shape::Ellipse { a: a * unit, b: b * unit }, 1.0, nodes)];
+            let links = [oval(axes.0, 16), oval(axes.1, 16)];
+            let bodies =
+                [body(&links[0], [0.0; 3], [0.0; 3]), body(&links[1], [0.7 * unit, 1.1 * unit, 0.9], [0.0; 3])];
+            let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 1.0 });
+            let quadrature = Quadrature::Plain;
+            let mut sim = at_start(&Scene { repulsion, quadrature, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+            sim.view().indicators().unwrap().repulsion
+        })
+    };
+    let exact = told(1.0);
+    assert!(exact.iter().all(|told| *told > 1e-9), "{exact:?}");
+    for unit in [1.0 / 1024.0, 1024.0] {
+        assert_close(&told(unit), &exact, 1e-9);
+    }
+}

@@ -12,6 +12,7 @@ mod layers;
 mod studies;
 mod test;
 
+use nekton_steps::{Outcome, cargo, execute};
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: cargo xtask <command>
@@ -28,6 +29,9 @@ commands:
              docs/bench/instructions.csv: counted instructions, which the test run holds
   fuzz --minutes N
              bytes as scenes and call sequences through the C interface; what it finds goes to fuzz/findings
+  mutants [--first N] [--minutes M] [--again] [--list]
+             docs/mutants.csv: 300 small wrong changes of core, one at a time, and which test notices each (three hours;
+             goes on where it was cut off)
   symbols    include/nekton.symbols from ffi/src
   c          what users of C and C++ meet: examples, wrapper, installed package
   dist --prefix P
@@ -50,6 +54,7 @@ fn main() -> ExitCode {
         ["firmware"] => firmware::run(),
         ["firmware", "--counts"] => firmware::print_counts(),
         ["fuzz", "--minutes", minutes] => fuzz::run(minutes),
+        ["mutants", options @ ..] => mutants(options),
         ["prelink"] => archive::write_prelinked(),
         ["symbols"] => archive::write_symbols(),
         ["c"] => c::run(),
@@ -71,4 +76,10 @@ fn main() -> ExitCode {
 fn usage() -> ExitCode {
     eprint!("{USAGE}{}", studies::USAGE);
     ExitCode::from(2)
+}
+
+/// The program of `tests/mutants`, which needs a parser of Rust that nothing else does.
+fn mutants(options: &[&str]) -> ExitCode {
+    let outcome = execute(cargo(&["run", "--quiet", "--package", "nekton-mutants", "--"]).args(options));
+    if matches!(outcome, Outcome::Passed) { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

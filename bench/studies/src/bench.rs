@@ -3,7 +3,7 @@
 use crate::page::Csv;
 use crate::speed::{self, TABLE};
 use nekton_steps::bench::{build, programs};
-use nekton_steps::{Outcome, cargo, execute, output, read, require, root};
+use nekton_steps::{Outcome, ask, cargo, execute, output, read, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode, Stdio};
 
