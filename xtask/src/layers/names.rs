@@ -22,8 +22,9 @@ fn defines(text: &str, name: &str, test: bool) -> bool {
 
 /// Where a name of the map may point: into core, into the tests, or anywhere from the root on.
 fn found(path: &str, read: Read<'_>) -> Option<String> {
-    let inside = path.starts_with("tests/").then(|| format!("tests/{path}"));
-    [Some(format!("core/src/{path}")), inside, Some(path.to_owned())].into_iter().flatten().find_map(|path| read(&path))
+    let inside = |folder: &str| path.starts_with("tests/").then(|| format!("{folder}/{path}"));
+    let places = [Some(format!("core/src/{path}")), inside("tests"), inside("core"), Some(path.to_owned())];
+    places.into_iter().flatten().find_map(|path| read(&path))
 }
 
 /// What is wrong with `FILE.rs:function`, or `FILE.rs`.
@@ -65,7 +66,7 @@ pub fn of_map(page: &str, read: Read<'_>) -> Vec<String> {
     faults
 }
 
-/// Names after "Tested by" in the header of a file of core that are not there: `tests/NAME` is a file of tests/tests.
+/// Names after "Tested by" in the header of a file of core that are not there: `tests/NAME` is a file of tests/tests or core/tests.
 pub fn of_header(text: &str, read: Read<'_>) -> Vec<String> {
     let header: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//!")).collect();
     let header = header.join("\n");

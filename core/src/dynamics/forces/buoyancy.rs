@@ -1,7 +1,7 @@
 //! Gravity and buoyancy (2.8), (2.16): P = g Σ [m_i y_i − m_f (y_i + c₂)], m_f = ρ·area, c the turned vector from
 //! the centre of mass to the area centroid. O(links).
 //!
-//! Tested by `tests/gradients`, `tests/circulation.rs:heavy_disc_with_circulation_drifts_along_a_trochoid`,
+//! Tested by `tests/offset_mass`, `tests/gradients`, `tests/circulation.rs:heavy_disc_with_circulation_drifts_along_a_trochoid`,
 //! `tests/conservation`.
 
 use crate::base::memory::{add, at};
