@@ -24,7 +24,8 @@ else
     end
 end
 
-source = fullfile(here, 'nekton_mex.c');
+names = {'nekton_mex', 'arguments', 'errors', 'models', 'objects', 'outputs', 'quantities', 'scene', 'steps'};
+sources = cellfun(@(name) fullfile(here, 'mex', [name '.c']), names, 'UniformOutput', false);
 include = ['-I' fullfile(root, 'include')];
 map = fullfile(here, 'nekton.map');
 clear nekton_mex
@@ -35,20 +36,24 @@ if exist('OCTAVE_VERSION', 'builtin')
         options = {['-Wl,--version-script=' map], '-Wl,--gc-sections', '-s', '-lpthread', '-ldl', '-lm'};
     end
     target = fullfile(here, ['nekton_mex.' mexext()]);
-    [output, status] = mkoctfile('--mex', include, '-Wall', '-o', target, source, archive, options{:});
-    object = fullfile(pwd(), 'nekton_mex.o');
-    if exist(object, 'file') == 2
-        delete(object);
-    end
+    % mkoctfile leaves its objects in the present folder.
+    work = tempname();
+    mkdir(work);
+    back = pwd();
+    cd(work);
+    [output, status] = mkoctfile('--mex', include, '-Wall', '-o', target, sources{:}, archive, options{:});
+    cd(back);
+    confirm_recursive_rmdir(false, 'local');
+    rmdir(work, 's');
     if status ~= 0
         error('nekton:build:mkoctfile', 'mkoctfile failed (package octave-dev):\n%s', output);
     end
 elseif isunix() && ~ismac()
-    mex(include, '-outdir', here, ['LDFLAGS=$LDFLAGS -Wl,--version-script=' map], source, archive, '-lpthread', '-ldl', '-lm');
+    mex(include, '-outdir', here, '-output', 'nekton_mex', ['LDFLAGS=$LDFLAGS -Wl,--version-script=' map], sources{:}, archive, '-lpthread', '-ldl', '-lm');
 elseif ismac()
-    mex(include, '-outdir', here, source, archive);
+    mex(include, '-outdir', here, '-output', 'nekton_mex', sources{:}, archive);
 else
-    mex(include, '-outdir', here, source, archive, '-lws2_32', '-luserenv', '-lntdll', '-lbcrypt', '-ladvapi32');
+    mex(include, '-outdir', here, '-output', 'nekton_mex', sources{:}, archive, '-lws2_32', '-luserenv', '-lntdll', '-lbcrypt', '-ladvapi32');
 end
 fprintf('built nekton_mex in %s\n', here);
 end

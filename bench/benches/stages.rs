@@ -167,7 +167,7 @@ fn matrix<R: Real>(n: usize) -> (Vec<R>, usize) {
 #[divan::bench(types = [f64, f32], args = ORDERS)]
 fn e_factorization<R: Real>(bencher: Bencher<'_, '_>, n: usize) {
     let (a, ld) = matrix::<R>(n);
-    let (mut lu, mut pivots) = (a.clone(), vec![R::zero(); n]);
+    let (mut lu, mut pivots) = (a.clone(), vec![R::Index::default(); n]);
     bencher.bench_local(|| {
         lu.copy_from_slice(&a);
         factor(&mut lu, ld, n, &mut pivots).expect("far from singular")
@@ -176,7 +176,7 @@ fn e_factorization<R: Real>(bencher: Bencher<'_, '_>, n: usize) {
 
 fn solve<R: Real>(bencher: Bencher<'_, '_>, n: usize, how: fn(&Factors<'_, R>, &mut [R])) {
     let (mut lu, ld) = matrix::<R>(n);
-    let mut pivots = vec![R::zero(); n];
+    let mut pivots = vec![R::Index::default(); n];
     factor(&mut lu, ld, n, &mut pivots).expect("far from singular");
     let factors = Factors { lu: &lu, ld, pivots: &pivots };
     let right = vec![R::one(); n];

@@ -64,13 +64,13 @@ fn product(a: &[f64], x: &[f64], y: &mut [f64]) {
 /// The factors of a body's own block.
 struct Block {
     lu: Vec<f64>,
-    pivots: Vec<f64>,
+    pivots: Vec<u64>,
 }
 
 impl Block {
     fn new(a: &[f64], n: usize, nodes: usize) -> Self {
         let mut lu: Vec<f64> = (0..nodes).flat_map(|k| a[k * n..k * n + nodes].to_vec()).collect();
-        let mut pivots = vec![0.0; nodes];
+        let mut pivots = vec![0; nodes];
         factor(&mut lu, nodes, nodes, &mut pivots).expect("a body alone has a solution");
         Block { lu, pivots }
     }
@@ -148,7 +148,7 @@ fn main() {
         for gap in [1.0, 0.2] {
             let n = columns * rows * nodes;
             let a = system(columns, rows, nodes, gap);
-            let (mut lu, mut pivots) = (a.clone(), vec![0.0; n]);
+            let (mut lu, mut pivots) = (a.clone(), vec![0; n]);
             let start = thread_seconds();
             factor(&mut lu, n, n, &mut pivots).expect("far from singular");
             let direct = thread_seconds() - start;

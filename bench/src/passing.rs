@@ -1,8 +1,7 @@
 //! The paper's example 9.2 to t = 10: error against time for nekton, for the paper's scheme in nekton, and for the paper's
 //! algorithm in Octave (`matlab/reference`).
 
-use crate::rows::Measured;
-use crate::timing::{median, thread_seconds};
+use crate::timing::{Measured, median, thread_seconds};
 use nekton::scene::{ForceFormula, Quadrature, Scene};
 use nekton_tests::{adams, paper_ellipse, simulation, two_ellipses};
 use std::path::Path;

@@ -3,7 +3,7 @@
 use crate::lapack::Lapack;
 use crate::passing;
 use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
-use crate::timing::Turns;
+use crate::timing::{Measured, Turns};
 use nekton::Method;
 use nekton::scene::{Body, Harmonic, Quadrature, Root, Scene, Signal};
 use nekton_tests::{body, simulation};
@@ -33,25 +33,6 @@ pub enum Held {
     Yes,
     /// Not reached yet, or only told, or depends on more than one free processor or another program.
     No,
-}
-
-/// What came out.
-pub struct Measured {
-    /// Seconds.
-    pub time: f64,
-    /// Seconds that it is divided by; 1 if the time itself is meant.
-    pub by: f64,
-    /// The value that `must` and `aim` speak of: the median of the ratios, or the time itself.
-    pub ratio: f64,
-    /// What else is worth knowing.
-    pub note: String,
-}
-
-impl Measured {
-    /// A time that is not divided by another.
-    pub fn seconds(time: f64, note: String) -> Self {
-        Measured { time, by: 1.0, ratio: time, note }
-    }
 }
 
 impl Row {
@@ -85,7 +66,7 @@ fn against_getrf(lapack: &Lapack, mut evaluation: Evaluation<f64>, order: usize)
 fn factorization(lapack: &Lapack, order: usize) -> Measured {
     let ld = order + 8;
     let a = diagonal_dominant(order, ld);
-    let (mut copy, mut pivots) = (a.clone(), vec![0.0; order]);
+    let (mut copy, mut pivots) = (a.clone(), vec![0u64; order]);
     let mut measured = beside_getrf(lapack, order, &mut || {
         copy.copy_from_slice(&a);
         nekton::lu::factor(&mut copy, ld, order, &mut pivots).expect("far from singular");

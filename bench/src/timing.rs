@@ -28,6 +28,25 @@ fn wall_seconds() -> f64 {
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
+/// What came out.
+pub struct Measured {
+    /// Seconds.
+    pub time: f64,
+    /// Seconds that it is divided by; 1 if the time itself is meant.
+    pub by: f64,
+    /// The value that `must` and `aim` speak of: the median of the ratios, or the time itself.
+    pub ratio: f64,
+    /// What else is worth knowing.
+    pub note: String,
+}
+
+impl Measured {
+    /// A time that is not divided by another.
+    pub fn seconds(time: f64, note: String) -> Self {
+        Measured { time, by: 1.0, ratio: time, note }
+    }
+}
+
 /// How many rounds, how long a round of one candidate is, by which clock.
 #[derive(Clone, Copy)]
 pub struct Turns {

@@ -6,7 +6,7 @@ use std::path::Path;
 use nekton::status::Result as CoreResult;
 use serde_json::{Value, json};
 
-use crate::Ending;
+use crate::ending::{Ending, say};
 use crate::scene_file::{Integrator, Problem};
 use crate::setup::Setup;
 use nekton::Sim;
@@ -17,7 +17,7 @@ pub fn evaluate(path: &Path, as_json: bool) -> Result<Ending, Problem> {
     // The method does not matter: no step is made.
     let mut sim = setup.simulate(Integrator::Rk4 { step: 1.0 })?;
     let values = Values::new(&setup, &mut sim.view()).map_err(|e| setup.problem(&e))?;
-    crate::say(&if as_json { values.json(&setup).to_string() } else { values.table(&setup) });
+    say(&if as_json { values.json(&setup).to_string() } else { values.table(&setup) });
     Ok(Ending::Complete)
 }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use nekton::scene::{Body, CirculationModel, Drive, Link, Scene, Wall};
 use nekton::{ModelBuf, Plan, Status};
 
+use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
-use crate::{Ending, say};
 
 /// Something that a scene may contain.
 struct Ingredient {

@@ -1,6 +1,7 @@
 //! The command `nekton`: scene files in; tables, plots and an animated report out. A library only so that the developers'
 //! commands draw with the same [`plots`].
 
+mod ending;
 mod evaluate;
 mod ingredients;
 mod output;
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use ending::Ending;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -99,14 +101,6 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// How a command ended that did not fail.
-pub(crate) enum Ending {
-    /// As asked.
-    Complete,
-    /// With results, but before the end.
-    Stopped,
-}
-
 /// Does what the arguments of the process say.
 pub fn command() -> ExitCode {
     let ending = match Arguments::parse().command {
@@ -126,10 +120,4 @@ pub fn command() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// Prints to standard output; a reader that has gone away (`nekton … | head`) is no error.
-pub(crate) fn say(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stdout(), "{text}");
 }

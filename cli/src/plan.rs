@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use crate::Ending;
+use crate::ending::{Ending, say};
 use crate::scene_file::Problem;
 use crate::setup::Setup;
 
 /// Prints the plan.
 pub fn plan(path: &Path) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
-    crate::say(&setup.model.view().plan().to_string());
-    crate::say(&format!("nodes                    {}", setup.nodes().join(", ")));
+    say(&setup.model.view().plan().to_string());
+    say(&format!("nodes                    {}", setup.nodes().join(", ")));
     for notice in setup.notices() {
-        crate::say(&format!("notice: {notice}"));
+        say(&format!("notice: {notice}"));
     }
     Ok(Ending::Complete)
 }

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place, Status};
 
+use crate::ending::{Ending, say};
 use crate::output::{Target, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
@@ -13,7 +14,6 @@ use crate::report;
 use crate::scene_file::{Integrator, Problem, RunDef};
 use crate::setup::Setup;
 use crate::trade;
-use crate::{Ending, say};
 use nekton::{Model, Resolution, Sim};
 
 /// Points with which an outline is drawn.

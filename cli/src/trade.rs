@@ -14,10 +14,11 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::Error;
 
+use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
-use crate::{Ending, say};
 use measure::Bench;
 use reference::{Reference, Refusal};
+use setting::shown;
 pub use setting::{Setting, Variant, counts, method, method_name, parameter, unit};
 use study::{Measured, Status, Study, cheapest, front};
 use table::{Table, beside, mark};
@@ -76,7 +77,8 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
             },
         )?;
         bar.finish_and_clear();
-        let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        let name = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy().into_owned());
+        let title = format!("{name}: error against time, to t = {} s", shown(reference.until));
         let picture = picture::draw(&title, &rows, &reference)
             .map_err(|e| Problem::file(path, format!("the plot could not be drawn: {e}")))?;
         table.write("trade.svg", picture.as_bytes())?;
@@ -153,10 +155,6 @@ fn report(
             None => say(&format!("for {error:.0e}: no setting that was tried is exact enough")),
         }
     }
-}
-
-fn shown(x: f64) -> String {
-    format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn method_text(setting: &Setting) -> String {

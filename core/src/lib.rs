@@ -42,61 +42,35 @@ extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
 
-pub(crate) mod articulation;
-pub mod boundary;
-mod build;
-pub(crate) mod christoffel;
-pub mod compile;
-mod compiled;
-pub(crate) mod configuration;
-pub(crate) mod contact;
-pub mod curve;
-pub mod diagnostics;
-pub(crate) mod dynamics;
-mod elementary;
-pub(crate) mod forces;
-pub mod grading;
-pub mod indicators;
+mod base;
+mod dynamics;
+mod fluid;
+mod geometry;
 pub mod integrate;
-mod layout;
-pub(crate) mod ldl;
-pub(crate) mod lone;
-pub mod lu;
-pub mod model;
-mod motion;
-pub(crate) mod near;
-pub(crate) mod nystrom;
-#[cfg(all(test, feature = "alloc"))]
-mod nystrom_test;
-#[cfg(feature = "alloc")]
-pub mod owned;
-pub(crate) mod pairs;
-pub mod plan;
-pub(crate) mod potentials;
-pub mod resolve;
-pub mod scalar;
+mod linear;
+mod model;
 pub mod scene;
-pub mod se2;
-pub(crate) mod signal;
-pub mod sim;
+mod setup;
+mod simulation;
+
+pub use base::{scalar, status};
+pub use linear::lu;
 #[cfg(feature = "bench")]
 #[doc(hidden)]
-pub mod stages;
-pub mod status;
-mod stepping;
-mod time_error;
-mod validate;
-pub(crate) mod work;
-pub(crate) mod workspace;
+pub use simulation::stages;
 
-pub use compile::{ModelMemory, ModelRequirement};
-pub use diagnostics::{Counters, Energy, Gap};
-pub use indicators::Resolution;
-pub use model::{Formulation, JointInfo, LinkInfo, Model, ModelHead};
+pub use base::scalar::Real;
+pub use base::status::{Error, Place, Result, Status};
+pub use dynamics::evaluation::Counters;
+pub use dynamics::indicators::Resolution;
+pub use fluid::contact::Gap;
+pub use model::boundary::BoundaryRecord;
+pub use model::plan::{Formulation, Plan};
+pub use model::{CoordinateRecord, JointInfo, LinkInfo, LinkRecord, Model, ModelHead};
+pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
-pub use owned::{ModelBuf, SimBuf};
-pub use plan::Plan;
-pub use scalar::Real;
-pub use sim::{Method, STEP_LIMIT, Sim, SimHead, SimRequirement};
-pub use status::{Error, Place, Result, Status};
-pub use time_error::TimeError;
+pub use setup::owned::{ModelBuf, SimBuf};
+pub use simulation::diagnostics::Energy;
+pub use simulation::sim::{STEP_LIMIT, Sim, SimHead, SimRequirement};
+pub use simulation::state::Method;
+pub use simulation::time_error::TimeError;

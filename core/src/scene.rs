@@ -3,7 +3,7 @@
 //! Units are SI per unit depth: lengths m, density kg/m³ (so mass kg/m, inertia kg·m), circulation m²/s,
 //! torque N, force N/m, energy J/m. Angles are radians, counter-clockwise.
 
-use crate::scalar::Real;
+use crate::base::scalar::Real;
 
 /// Everything that describes a scene. Absent ingredients (no gravity, no repulsion, no circulation, no
 /// walls, fluid density 0) cost neither time nor memory.
@@ -28,7 +28,7 @@ pub struct Scene<'a, R> {
     /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
     pub quadrature: Quadrature,
     /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes (`None`:
-    /// [`DEFAULT_TOLERANCE`](crate::resolve::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
+    /// [`DEFAULT_TOLERANCE`](crate::setup::automatic_nodes::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
     pub tolerance: Option<R>,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
@@ -133,7 +133,7 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -168,7 +168,7 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::resolve`]).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes (see [`crate::setup::automatic_nodes`]).
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,
@@ -346,4 +346,33 @@ impl<R: Real> Scene<'_, R> {
             shortcuts: true,
         }
     }
+}
+
+/// Every link with its body and place in the body.
+pub(crate) fn each_link<'a, R: Real, S: Description<R>>(
+    scene: &'a S,
+) -> impl Iterator<Item = (usize, usize, Link<'a, R>)> + Clone {
+    (0..scene.body_count())
+        .flat_map(move |b| (0..scene.link_count(b)).filter_map(move |l| Some((b, l, scene.link(b, l)?))))
+}
+
+/// The signal of every coordinate, in their order.
+pub(crate) fn motions<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Signal<'a, R>> + Clone {
+    (0..scene.body_count()).filter_map(move |b| Some((b, scene.body(b)?))).flat_map(move |(b, body)| {
+        let root = match body.root {
+            Root::Prescribed(signals) => signals,
+            Root::Free => [Signal::Constant(R::zero()); 3],
+        };
+        let joints = (0..scene.link_count(b)).filter_map(move |l| scene.link(b, l)?.joint);
+        root.into_iter().chain(joints.map(|j| match j.drive {
+            Drive::Locked(value) => Signal::Constant(value),
+            Drive::Motion(signal) => signal,
+            Drive::Torque { torque, .. } => torque,
+        }))
+    })
+}
+
+/// Number of fixed boundaries.
+pub(crate) fn wall_count<R: Real, S: Description<R>>(scene: &S) -> usize {
+    scene.obstacle_count() + usize::from(scene.tank().is_some())
 }

@@ -1,10 +1,10 @@
 /* Three ellipses in a row, whose two hinges beat as prescribed, swim in memory that is laid out before the program starts:
    no heap. Compiled once for double and, with -DSINGLE, once for single precision. Prints the trajectory of the middle link,
    memory, clock ticks and stack. How to build: README.md. */
-#include "../../include/nekton.h"
 #include "board.h"
 
 #ifdef SINGLE
+#include "../../include/nekton32.h"
 typedef float real;
 #define NAME "f32"
 #define NEKTON(name) nekton32_##name
@@ -12,6 +12,7 @@ typedef float real;
 #define SIM_BYTES NEKTON32_SIM_BYTES
 #define DECIMALS 9
 #else
+#include "../../include/nekton.h"
 typedef double real;
 #define NAME "f64"
 #define NEKTON(name) nekton_##name

@@ -2,7 +2,7 @@
 
 use crate::diag::{report, report_notice};
 use crate::types::*;
-use crate::{model, sim};
+use crate::{model, questions, sim};
 use core::ffi::c_void;
 use core::ptr::null_mut;
 
@@ -255,7 +255,7 @@ pub unsafe extern "C" fn nekton32_sim_time(sim: *const SimHandle<f32>, t: *mut f
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_positions(sim: *const SimHandle<f32>, q: *mut f32, n: usize) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), sim::shown(sim, q, n, false)) }
+    unsafe { report(null_mut(), questions::shown(sim, q, n, false)) }
 }
 
 /// Rates of x, y, theta of every link; n = 3 links.
@@ -263,7 +263,7 @@ pub unsafe extern "C" fn nekton32_sim_positions(sim: *const SimHandle<f32>, q: *
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton32_sim_velocities(sim: *const SimHandle<f32>, qd: *mut f32, n: usize) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), sim::shown(sim, qd, n, true)) }
+    unsafe { report(null_mut(), questions::shown(sim, qd, n, true)) }
 }
 
 /// Time and integrated state: free coordinates, their rates (not for a lone swimmer), and last the work of the
@@ -398,7 +398,7 @@ pub unsafe extern "C" fn nekton32_sim_joint_values(
     n: usize,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), sim::joints(sim, ("u", u), ("du", du), n, sim::joint_values)) }
+    unsafe { report(null_mut(), questions::joints(sim, ("u", u), ("du", du), n, questions::joint_values)) }
 }
 
 /// Torque (slider: force) that drives every joint, and its power; n = joints each.
@@ -413,7 +413,9 @@ pub unsafe extern "C" fn nekton32_sim_joint_torques(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::joints(sim, ("torque", torque), ("power", power), n, |s, a, b| s.joint_torques(a, b))) }
+    unsafe {
+        report(diag, questions::joints(sim, ("torque", torque), ("power", power), n, |s, a, b| s.joint_torques(a, b)))
+    }
 }
 
 /// Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
@@ -427,7 +429,7 @@ pub unsafe extern "C" fn nekton32_sim_accelerations(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.accelerations(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 1, |s, out| s.accelerations(out))) }
 }
 
 /// Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
@@ -441,7 +443,7 @@ pub unsafe extern "C" fn nekton32_sim_mass_matrix(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.mass_matrix(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 2, |s, out| s.mass_matrix(out))) }
 }
 
 /// Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
@@ -455,7 +457,7 @@ pub unsafe extern "C" fn nekton32_sim_added_mass(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.added_mass(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 2, |s, out| s.added_mass(out))) }
 }
 
 /// Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
@@ -470,7 +472,7 @@ pub unsafe extern "C" fn nekton32_sim_christoffel(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.christoffel(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 1, |s, out| s.christoffel(out))) }
 }
 
 /// Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
@@ -485,7 +487,7 @@ pub unsafe extern "C" fn nekton32_sim_christoffel_tensor(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 3, |s, out| s.christoffel_tensor(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 3, |s, out| s.christoffel_tensor(out))) }
 }
 
 /// Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
@@ -500,7 +502,7 @@ pub unsafe extern "C" fn nekton32_sim_buoyancy(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.buoyancy(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 1, |s, out| s.buoyancy(out))) }
 }
 
 /// Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
@@ -515,7 +517,7 @@ pub unsafe extern "C" fn nekton32_sim_repulsion(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.repulsion(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 1, |s, out| s.repulsion(out))) }
 }
 
 /// Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
@@ -530,7 +532,7 @@ pub unsafe extern "C" fn nekton32_sim_circulation_gradient(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 1, |s, out| s.circulation_gradient(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 1, |s, out| s.circulation_gradient(out))) }
 }
 
 /// Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
@@ -544,7 +546,7 @@ pub unsafe extern "C" fn nekton32_sim_gyroscopic(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::ask(sim, out, n, 2, |s, out| s.gyroscopic(out))) }
+    unsafe { report(diag, questions::ask(sim, out, n, 2, |s, out| s.gyroscopic(out))) }
 }
 
 /// Energies at the state shown. One evaluation if there was none since the last step.
@@ -556,7 +558,7 @@ pub unsafe extern "C" fn nekton32_sim_energy(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::energy(sim, energy)) }
+    unsafe { report(diag, questions::energy(sim, energy)) }
 }
 
 /// Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.
@@ -568,7 +570,7 @@ pub unsafe extern "C" fn nekton32_sim_impulse(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::impulse(sim, impulse.cast())) }
+    unsafe { report(diag, questions::impulse(sim, impulse.cast())) }
 }
 
 /// Error indicators of the steps: the largest over the last call that stepped; before the first step those of the state
@@ -582,7 +584,7 @@ pub unsafe extern "C" fn nekton32_sim_indicators(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::resolution(sim, indicators, |s| s.indicators())) }
+    unsafe { report(diag, questions::resolution(sim, indicators, |s| s.indicators())) }
 }
 
 /// Error indicators of the space discretization at the state shown, from all of the added mass. 6 links + 7 solves.
@@ -594,7 +596,7 @@ pub unsafe extern "C" fn nekton32_sim_resolution(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::resolution(sim, resolution, |s| s.resolution())) }
+    unsafe { report(diag, questions::resolution(sim, resolution, |s| s.resolution())) }
 }
 
 /// Estimated local errors of time integration since the start or the last nekton32_sim_set_state. Where the motion
@@ -608,7 +610,7 @@ pub unsafe extern "C" fn nekton32_sim_time_error(
     error: *mut TimeErrorOut<f32>,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), sim::time_error(sim, error)) }
+    unsafe { report(null_mut(), questions::time_error(sim, error)) }
 }
 
 /// The smallest gap between boundaries of which one moves. No evaluation.
@@ -620,7 +622,7 @@ pub unsafe extern "C" fn nekton32_sim_gap(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(diag, sim::gap(sim, gap)) }
+    unsafe { report(diag, questions::gap(sim, gap)) }
 }
 
 /// What the simulation did since its start.
@@ -631,5 +633,5 @@ pub unsafe extern "C" fn nekton32_sim_counters(
     counters: *mut nekton_counters,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), sim::counters(sim, counters)) }
+    unsafe { report(null_mut(), questions::counters(sim, counters)) }
 }

@@ -1,6 +1,6 @@
 #![no_std]
 #![allow(non_camel_case_types)]
-//! C interface of nekton: `include/nekton.h` is generated from the exported functions and types here.
+//! C interface of nekton: `include/nekton.h` and `include/nekton32.h` are generated from the exported functions and types here.
 //!
 //! Every exported function is a line or two around generic code: `api64` is written by hand, `api32` is made from it by
 //! `cargo xtask header`, `shared` has no twin.
@@ -17,13 +17,17 @@ extern crate std;
 
 pub mod api32;
 pub mod api64;
+mod buffers;
 mod check;
 mod convert;
 pub mod diag;
 mod memory;
 mod model;
+mod model_object;
+mod questions;
 pub mod shared;
 mod sim;
+mod sim_object;
 pub mod types;
 
 #[cfg(not(feature = "std"))]

@@ -3,8 +3,11 @@
 use crate::check::Checked;
 use crate::convert::check_pointer;
 use crate::diag::{Fault, Outcome, place_of};
-use crate::memory::{begin_model, check_memory, model, model_req};
+use crate::memory::check_memory;
+use crate::model_object::{begin_model, model, model_req};
 use crate::shared::NEKTON_ABI_VERSION;
+#[cfg(feature = "std")]
+use crate::shared::NEKTON_ALIGN;
 use crate::types::*;
 use nekton::{Formulation, Model, Real, Status};
 
@@ -172,7 +175,7 @@ fn allocate(req: &nekton_req) -> Outcome<*mut u8> {
 
 #[cfg(feature = "std")]
 unsafe fn release(mem: *mut u8, bytes: usize) {
-    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, crate::memory::ALIGN) {
+    if let Ok(layout) = std::alloc::Layout::from_size_align(bytes, NEKTON_ALIGN) {
         // SAFETY: from `allocate` with the same layout.
         unsafe { std::alloc::dealloc(mem, layout) };
     }
@@ -208,7 +211,7 @@ pub(crate) unsafe fn free<R: Real>(handle: *mut ModelHandle<R>) -> Outcome<Statu
     }
     // SAFETY: `retire_model` checks that the object came from `create`.
     unsafe {
-        let owned = crate::memory::retire_model(handle)?;
+        let owned = crate::model_object::retire_model(handle)?;
         release(owned.mem, owned.bytes);
     }
     Ok(Status::Ok)
@@ -221,7 +224,7 @@ pub(crate) unsafe fn free_sim<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Sta
     }
     // SAFETY: `retire_sim` checks that the object came from `create`.
     unsafe {
-        let owned = crate::memory::retire_sim(handle)?;
+        let owned = crate::sim_object::retire_sim(handle)?;
         release(owned.mem, owned.bytes);
     }
     Ok(Status::Ok)
@@ -271,8 +274,8 @@ pub(crate) unsafe fn plan<R: Real>(handle: *const ModelHandle<R>, out: *mut nekt
         right_hand_sides: p.right_hand_sides,
         tolerance: p.tolerance,
         // SAFETY: checked in `model`.
-        model_bytes: unsafe { crate::memory::model_bytes(handle) }?,
-        sim_bytes: crate::memory::sim_req(&model)?.size,
+        model_bytes: unsafe { crate::model_object::model_bytes(handle) }?,
+        sim_bytes: crate::sim_object::sim_req(&model)?.size,
         operations: p.operations,
     };
     // SAFETY: checked above.

@@ -14,8 +14,6 @@ pub const NEKTON_CAP_ALLOC: u32 = 1;
 /// Alignment that is enough for every object, bytes.
 pub const NEKTON_ALIGN: usize = 8;
 
-const _: () = assert!(NEKTON_ALIGN == crate::memory::ALIGN);
-
 /// The library's NEKTON_ABI_VERSION, to be compared with the header's. Any thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn nekton_abi_version() -> u32 {

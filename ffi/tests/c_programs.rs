@@ -1,4 +1,4 @@
-//! C programs compiled with the system's compiler against nekton.h and the static library.
+//! C programs compiled with the system's compiler against nekton.h, nekton32.h and the static library.
 
 use nekton::scene::{Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape, Signal, Wall};
 use nekton::{Method, ModelBuf, Place, Real, Sim, SimBuf};
@@ -19,9 +19,9 @@ fn library() -> PathBuf {
     library
 }
 
-/// A program's text in single precision: other names, other type.
+/// A program's text in single precision: other names, other type, other header.
 fn single(source: &str) -> String {
-    let mut text = source.replace("typedef double real;", "typedef float real;");
+    let mut text = source.replace("typedef double real;", "typedef float real;").replace("nekton.h\"", "nekton32.h\"");
     for name in [
         "scene_def",
         "wall_def",
@@ -68,22 +68,27 @@ fn source(name: &str) -> String {
     std::fs::read_to_string(root().join("ffi/tests/c").join(name)).unwrap()
 }
 
-/// Compiles the header alone.
-fn accepts(compiler: &str, standard: &str, suffix: &str) {
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("header{standard}.{suffix}"));
-    let text = "#include \"nekton.h\"\n#include \"nekton.h\"\nint main(void) { return (int)NEKTON_SIM_BYTES(1, 0, 8, 0, 0, 0, 0, 0, 1) == 0; }\n";
+/// Compiles a header alone, included twice.
+fn accepts(header: &str, compiler: &str, standard: &str, suffix: &str) {
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{header}{standard}.{suffix}"));
+    let bytes = format!("{}_SIM_BYTES", header.trim_end_matches(".h").to_uppercase());
+    let text = format!(
+        "#include \"{header}\"\n#include \"{header}\"\nint main(void) {{ return (int){bytes}(1, 0, 8, 0, 0, 0, 0, 0, 1) == 0; }}\n"
+    );
     std::fs::write(&file, text).unwrap();
     let mut command = Command::new(compiler);
     command.arg(standard).args(STRICT).arg("-I").arg(root().join("include"));
     let status = command.args(["-fsyntax-only"]).arg(&file).status().expect("a compiler");
-    assert!(status.success(), "{compiler} {standard}");
+    assert!(status.success(), "{header} by {compiler} {standard}");
 }
 
 #[test]
-fn header_is_clean_c99_c11_and_cpp17() {
-    accepts("cc", "-std=c99", "c");
-    accepts("cc", "-std=c11", "c");
-    accepts("c++", "-std=c++17", "cpp");
+fn headers_are_clean_c99_c11_and_cpp17() {
+    for header in ["nekton.h", "nekton32.h"] {
+        accepts(header, "cc", "-std=c99", "c");
+        accepts(header, "cc", "-std=c11", "c");
+        accepts(header, "c++", "-std=c++17", "cpp");
+    }
 }
 
 /// Reads "tried N model X sim Y".
@@ -100,9 +105,11 @@ fn size_macros_are_enough_and_not_much_more() {
     }
 }
 
-/// Every function that the header declares.
+/// Every function that the headers declare.
 fn functions() -> Vec<String> {
-    let header = std::fs::read_to_string(root().join("include/nekton.h")).unwrap();
+    let headers =
+        ["nekton.h", "nekton32.h"].map(|name| std::fs::read_to_string(root().join("include").join(name)).unwrap());
+    let header = headers.concat();
     let declared = header.lines().filter(|l| !l.starts_with([' ', '#', '/', '}']) && l.contains('('));
     let name = |l: &str| {
         let before = l.split('(').next().unwrap_or("");

@@ -11,6 +11,7 @@ pub mod near;
 pub mod extremes;
 pub mod indicator_study;
 pub mod long_run;
+pub mod printed;
 pub mod regrading;
 
 /// What a scalar type allows; about ten times what is measured.

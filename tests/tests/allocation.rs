@@ -2,9 +2,9 @@
 
 #![allow(unsafe_code)]
 
-use nekton::boundary::BoundaryRecord;
-use nekton::model::{CoordinateRecord, LinkRecord};
+use nekton::BoundaryRecord;
 use nekton::scene::{Drive, Harmonic, Link, Repulsion, Scene, Shape, Signal, Wall};
+use nekton::{CoordinateRecord, LinkRecord};
 use nekton::{Formulation, Method, Model, ModelMemory, Result, Sim, Status};
 use nekton_tests::*;
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -2,7 +2,7 @@
 //! into one object of which only nekton's own symbols can be seen.
 
 use crate::bare::Compiler;
-use crate::steps::{ask, cargo, read, root};
+use nekton_steps::{ask, cargo, read, root};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};

@@ -1,6 +1,6 @@
 //! A compiler for targets without an operating system.
 
-use crate::steps::{output, root};
+use nekton_steps::{Outcome, output, root};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -41,30 +41,48 @@ pub fn installed(target: &str) -> bool {
     folder.is_some_and(|folder| Path::new(&folder).is_dir())
 }
 
+/// The least version of the compiler that the workspace can be built with.
+const LEAST: &str = env!("CARGO_PKG_RUST_VERSION");
+/// What the script ends with where no fit compiler can be had.
+const UNFIT: i32 = 3;
+
+/// The script that makes a private compiler in a folder.
+fn script(folder: &Path, least: &str, target: &str) -> Command {
+    let mut script = Command::new("sh");
+    script.arg(root().join("xtask/bare-toolchain.sh")).arg(folder).args([least, target]);
+    script
+}
+
 /// A compiler for a target: the usual one, or else a private one in `target/`, made by `bare-toolchain.sh` where Debian's
-/// packages can be had. The error says what is missing and what would help.
-pub fn compiler(target: &str) -> Result<Compiler, String> {
+/// packages can be had. Otherwise the step is skipped, and the reason says what would help; it fails where a compiler
+/// that is fit could not be made ready.
+pub fn compiler(target: &str) -> Result<Compiler, Outcome> {
     if installed(target) {
         return Ok(Compiler::usual());
     }
     let folder = root().join("target/bare-toolchain");
-    let made = Command::new("sh")
-        .arg(root().join("xtask/bare-toolchain.sh"))
-        .arg(&folder)
-        .arg(target)
-        .stdout(Stdio::inherit())
-        .stderr(Stdio::piped())
-        .output();
-    let why = match made {
-        Ok(made) if made.status.success() => return Ok(Compiler { rustc: Some(folder.join("bin/rustc")) }),
-        Ok(made) => {
-            let text = String::from_utf8_lossy(&made.stderr).into_owned();
-            eprint!("{text}");
-            text.lines().last().unwrap_or("no reason given").to_string()
-        }
-        Err(error) => error.to_string(),
-    };
-    Err(format!(
-        "no compiler for {target}; try: rustup target add {target} (making one from Debian's packages failed: {why})"
-    ))
+    let mut script = script(&folder, LEAST, target);
+    made(script.stdout(Stdio::inherit()), target).map(|()| Compiler { rustc: Some(folder.join("bin/rustc")) })
 }
+
+/// Runs the script.
+fn made(script: &mut Command, target: &str) -> Result<(), Outcome> {
+    let broken = |why: &str| Outcome::Failed(format!("making a compiler for {target} failed: {why}"));
+    let made = script.stderr(Stdio::piped()).output().map_err(|error| broken(&error.to_string()))?;
+    if made.status.success() {
+        return Ok(());
+    }
+    let text = String::from_utf8_lossy(&made.stderr);
+    eprint!("{text}");
+    let why = text.lines().last().unwrap_or("no reason given");
+    match made.status.code() {
+        Some(UNFIT) => Err(Outcome::Skipped(format!(
+            "no compiler for {target}; try: rustup target add {target} (or one from Debian's packages: {why})"
+        ))),
+        _ => Err(broken(why)),
+    }
+}
+
+#[cfg(test)]
+#[path = "bare_test.rs"]
+mod tests;

@@ -2,11 +2,12 @@
 
 use crate::archive::SYMBOLS;
 use crate::dist::{install, soname};
-use crate::expected::{Lines, lines, numbers};
-use crate::steps::{Outcome, Steps, ask, read, require, root};
+use nekton_steps::{Outcome, Steps, ask, read, require, root};
+use nekton_tests::printed::{Lines, lines, numbers};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::OnceLock;
 
 const WARNINGS: [&str; 6] = ["-O2", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
 /// Examples that must not use the heap.
@@ -15,6 +16,16 @@ const WITHOUT_HEAP: [&str; 2] = ["one_body_static", "swimmer_closed_loop"];
 /// Where the steps install.
 fn prefix() -> PathBuf {
     root().join("target/nekton")
+}
+
+/// Installs there, once in a run: whichever of the steps is run first does not meet what an earlier run left behind.
+fn installed() -> Result<(), String> {
+    static DONE: OnceLock<Result<(), String>> = OnceLock::new();
+    let install = || {
+        let _ = std::fs::remove_dir_all(prefix());
+        install(&prefix())
+    };
+    DONE.get_or_init(install).clone()
 }
 
 /// A folder for what a step builds, empty.
@@ -32,14 +43,11 @@ pub fn run() -> ExitCode {
     steps.finish()
 }
 
-/// A step that needs programs, given with their packages.
+/// A step that needs the installed tree, and programs, given with their packages.
 fn step(steps: &mut Steps, name: &str, programs: &[(&str, &str)], action: impl FnOnce() -> Result<(), String>) {
-    steps.run(name, || match require(programs) {
+    steps.run(name, || match require(&[programs, &[CC, BINUTILS]].concat()) {
         Err(why) => Outcome::Skipped(why),
-        Ok(()) => match action() {
-            Ok(()) => Outcome::Passed,
-            Err(why) => Outcome::Failed(why),
-        },
+        Ok(()) => installed().and_then(|()| action()).into(),
     });
 }
 
@@ -50,10 +58,7 @@ const CMAKE: (&str, &str) = ("cmake", "cmake");
 
 /// Adds the steps to a run.
 pub fn add(steps: &mut Steps) {
-    step(steps, "installed package", &[CC, BINUTILS], || {
-        let _ = std::fs::remove_dir_all(prefix());
-        install(&prefix())
-    });
+    step(steps, "installed package", &[CC, BINUTILS], || Ok(()));
     step(steps, "exported symbols", &[BINUTILS], symbols);
     step(steps, "examples in C99 and C++17, static and shared", &[CC, CXX], examples);
     step(steps, "examples by the lines in their headers", &[CC, CXX], compiler_lines);
@@ -70,10 +75,12 @@ pub fn add(steps: &mut Steps) {
     step(steps, "commands of examples-c/README.md", &[CC], readme_of_examples);
 }
 
-/// Both libraries offer the functions that the header declares, and nothing else.
+/// Both libraries offer the functions that the headers declare, and nothing else.
 fn symbols() -> Result<(), String> {
     let promised: BTreeSet<String> = read(&root().join(SYMBOLS))?.lines().map(str::to_string).collect();
-    let header = read(&prefix().join("include/nekton.h"))?;
+    let headers = ["nekton.h", "nekton32.h"].map(|name| read(&prefix().join("include").join(name)));
+    let [double, single] = headers;
+    let header = double? + &single?;
     // A name at the left of a parenthesis, not in a comment.
     let declared: BTreeSet<String> = header
         .lines()
@@ -87,7 +94,7 @@ fn symbols() -> Result<(), String> {
         Ok(listing.lines().filter_map(|line| Some(line.split_whitespace().nth(2)?.to_string())).collect())
     };
     let kinds = [
-        ("nekton.h", declared),
+        ("nekton.h with nekton32.h", declared),
         ("libnekton.so", offered(&["-D", "--defined-only"], "libnekton.so")?),
         ("libnekton.a", offered(&["-g", "--defined-only"], "libnekton.a")?),
     ];
@@ -256,7 +263,7 @@ fn wrapper(compiler: &str) -> Result<(), String> {
 
 /// Every function of the interface but those without an object has its place in the wrapper.
 fn wrapped() -> Result<(), String> {
-    let wrapper = read(&root().join("include/nekton.hpp"))?;
+    let wrapper = read(&root().join("include/nekton/api.hpp"))?;
     let symbols = read(&root().join(SYMBOLS))?;
     for name in symbols.lines().filter_map(|name| name.strip_prefix("nekton_")) {
         let free = ["abi_version", "capabilities", "status_text", "status_name", "diag_text"].contains(&name);

@@ -1,18 +1,19 @@
 //! Instructions of what is called again and again, counted by callgrind: the guard of speed that no other work disturbs.
 
-use crate::bench::{build, programs};
-use crate::steps::{Outcome, ask, read, require, root};
+use nekton_steps::bench::{build, programs};
+use nekton_steps::{Outcome, ask, read, require, root};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
 const COUNTS: &str = "docs/bench/instructions.csv";
 /// Relative change of a count that is let pass.
 const SLACK: f64 = 0.1;
+const VALGRIND: [(&str, &str); 1] = [("valgrind", "valgrind")];
 
 /// Name and instructions of one call, for each scene that the benchmark program offers and by both its builds. Callgrind
 /// shows programs a processor with AVX2 and without AVX-512, whatever the machine has.
 fn counts() -> Result<Vec<(String, f64)>, String> {
-    require(&[("valgrind", "valgrind")])?;
+    require(&VALGRIND)?;
     build()?;
     let folder = root().join("target/callgrind");
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
@@ -53,9 +54,12 @@ pub fn held() -> Outcome {
         Ok(text) => text,
         Err(why) => return Outcome::Failed(why),
     };
+    if let Err(why) = require(&VALGRIND) {
+        return Outcome::Skipped(why);
+    }
     let counts = match counts() {
         Ok(counts) => counts,
-        Err(why) => return Outcome::Skipped(why),
+        Err(why) => return Outcome::Failed(why),
     };
     let mut changed = Vec::new();
     for (name, count) in counts {

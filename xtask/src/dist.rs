@@ -2,13 +2,25 @@
 //! moved as a whole.
 
 use crate::archive::{HERE, Machine, prelink};
-use crate::steps::{cargo, read, root};
+use nekton_steps::{cargo, read, root};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// This computer, with its operating system.
 const DESKTOP: Machine = Machine { folder: "desktop", ..HERE };
 const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// What programs include, and the parts of the C++ layer.
+const HEADERS: [&str; 9] = [
+    "nekton.h",
+    "nekton32.h",
+    "nekton.hpp",
+    "nekton/api.hpp",
+    "nekton/definitions.hpp",
+    "nekton/error.hpp",
+    "nekton/model.hpp",
+    "nekton/sim.hpp",
+    "nekton/span.hpp",
+];
 
 pub fn run(prefix: &str) -> ExitCode {
     match install(Path::new(prefix)) {
@@ -48,10 +60,10 @@ pub fn install(prefix: &Path) -> Result<(), String> {
     }
     let (include, lib) = (prefix.join("include"), prefix.join("lib"));
     let (pkg_config, cmake) = (lib.join("pkgconfig"), lib.join("cmake/nekton"));
-    for folder in [&include, &pkg_config, &cmake] {
+    for folder in [&include.join("nekton"), &pkg_config, &cmake] {
         std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
-    for header in ["nekton.h", "nekton.hpp"] {
+    for header in HEADERS {
         copy(&root().join("include").join(header), &include.join(header))?;
     }
     let soname = soname()?;

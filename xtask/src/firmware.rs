@@ -2,7 +2,7 @@
 
 use crate::archive::{HERE, Machine, build_package, finish, proven};
 use crate::bare::{CORTEX_M, Compiler, compiler};
-use crate::steps::{Outcome, ask, cargo, output, require, root};
+use nekton_steps::{Outcome, ask, cargo, output, require, root};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -192,19 +192,26 @@ impl Board {
     }
 }
 
-/// Instructions of one evaluation of the swimmer, and of the factorization alone for each of its multiply-adds.
-pub struct Counted {
-    pub processor: &'static str,
-    pub precision: &'static str,
-    pub evaluation: f64,
-    pub per_multiply_add: f64,
+/// `cargo xtask firmware --counts`: prints, as CSV, instructions of one evaluation of the swimmer, and of the factorization alone
+/// for each of its multiply-adds.
+pub fn print_counts() -> ExitCode {
+    match counts() {
+        Ok(table) => {
+            print!("{table}");
+            ExitCode::SUCCESS
+        }
+        Err(why) => {
+            eprintln!("{why}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 /// Counts on every board, in every precision that its processor computes itself. Cost: a build and six runs.
-pub fn counts() -> Result<Vec<Counted>, String> {
+fn counts() -> Result<String, String> {
     require(&PROGRAMS)?;
-    let compiler = compiler(CORTEX_M)?;
-    let mut all = Vec::new();
+    let compiler = compiler(CORTEX_M).map_err(Outcome::why)?;
+    let mut table = String::from("processor,precision,evaluation,per_multiply_add\n");
     for board in &BOARDS {
         let whole = build_package("nekton-ffi", &board.machine, &compiler)?;
         let lu = build_package("nekton-bench-bare", &board.machine, &compiler)?;
@@ -219,15 +226,12 @@ pub fn counts() -> Result<Vec<Counted>, String> {
             };
             let instructions = |ticks: u64| (ticks * INSTRUCTIONS_PER_TICK) as f64;
             let (evaluation, lu) = (run("evaluation.c", &whole)?, run("lu.c", &lu)?);
-            all.push(Counted {
-                processor: board.name,
-                precision,
-                evaluation: instructions(evaluation.number("evaluation ticks")),
-                per_multiply_add: instructions(lu.number("lu ticks")) / lu.number("multiply adds") as f64,
-            });
+            let evaluation = instructions(evaluation.number("evaluation ticks"));
+            let per_multiply_add = instructions(lu.number("lu ticks")) / lu.number("multiply adds") as f64;
+            table += &format!("{},{precision},{evaluation},{per_multiply_add}\n", board.name);
         }
     }
-    Ok(all)
+    Ok(table)
 }
 
 const PROGRAMS: [(&str, &str); 4] = [
@@ -243,14 +247,11 @@ pub fn step(name: &str) -> Outcome {
     let Some(board) = BOARDS.iter().find(|board| board.name == name) else {
         return Outcome::Failed(format!("no board {name}"));
     };
-    let compiler = match require(&PROGRAMS).and_then(|()| compiler(CORTEX_M)) {
+    let compiler = match require(&PROGRAMS).map_err(Outcome::Skipped).and_then(|()| compiler(CORTEX_M)) {
         Ok(compiler) => compiler,
-        Err(why) => return Outcome::Skipped(why),
+        Err(outcome) => return outcome,
     };
-    match board.measure(&compiler).and_then(|rows| hold(&rows)) {
-        Ok(()) => Outcome::Passed,
-        Err(why) => Outcome::Failed(why),
-    }
+    board.measure(&compiler).and_then(|rows| hold(&rows)).into()
 }
 
 /// Committed figures, and README's table of them, must be those measured, but for what another compiler's version makes of it.
@@ -309,7 +310,8 @@ fn table() -> Result<String, String> {
 
 /// `cargo xtask firmware`: measures and writes the figures, and prints README's table.
 pub fn run() -> ExitCode {
-    let made = require(&PROGRAMS).and_then(|()| compiler(CORTEX_M)).and_then(|compiler| {
+    let compiler = require(&PROGRAMS).and_then(|()| compiler(CORTEX_M).map_err(Outcome::why));
+    let made = compiler.and_then(|compiler| {
         let mut rows = Vec::new();
         for board in &BOARDS {
             rows.extend(board.measure(&compiler)?);

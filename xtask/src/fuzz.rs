@@ -1,6 +1,6 @@
 //! `cargo xtask fuzz`: bytes as scenes and calls, for minutes.
 
-use crate::steps::{Outcome, cargo, execute, output, root};
+use nekton_steps::{Outcome, cargo, execute, output, root};
 use std::process::{Command, ExitCode};
 
 /// What libFuzzer needs to see where a run goes, and the sanitizer that sees every access outside of an object.

@@ -1,8 +1,8 @@
 //! `cargo xtask header`: what is made from the sources of the C interface and from the list of errors. The results are
 //! committed, so that users need neither this command nor cbindgen; a test compares them.
 
-use crate::steps::root;
 use nekton::Status;
+use nekton_steps::root;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -27,15 +27,15 @@ const TYPES: [(&str, &str); 16] = [
     ("SimHandle", "sim"),
 ];
 
-/// What the header says before the declarations.
-const PREAMBLE: &str = include_str!("header_preamble.h");
+/// What the headers say before the declarations.
+const PREAMBLES: [&str; 2] = [include_str!("header_preamble.h"), include_str!("header_preamble32.h")];
 /// Macros for static memory.
-const MACROS: &str = include_str!("header_macros.h");
+const MACROS: [&str; 2] = [include_str!("header_macros.h"), include_str!("header_macros32.h")];
 
 /// Writes the files.
 pub fn run() -> ExitCode {
-    // The header is made from the twin, so the twin comes first.
-    for make in [twin, header, errors] {
+    // The headers are made from the twin, so the twin comes first.
+    for make in [twin, header, header32, errors] {
         let (path, content) = make();
         if std::fs::read_to_string(&path).is_ok_and(|old| old == content) {
             println!("{}: up to date", path.display());
@@ -108,6 +108,26 @@ fn constant(status: Status) -> String {
 
 /// include/nekton.h.
 fn header() -> (PathBuf, String) {
+    let mut errors = String::from("/**\n * Outcomes: 0 ok, > 0 notices, < 0 errors.\n */\nenum {\n");
+    for status in Status::ALL {
+        let comma = if Some(status) == Status::ALL.last() { "" } else { "," };
+        let _ = writeln!(errors, "    /** {} */\n    {} = {}{comma}", status.text(), constant(*status), status.code());
+    }
+    errors.push_str("};\n");
+    let [body, _] = declarations();
+    let text = format!("{}\n{errors}\n{body}\n\n{}\n#endif /* NEKTON_H */\n", PREAMBLES[0], MACROS[0]);
+    (root().join("include/nekton.h"), text)
+}
+
+/// include/nekton32.h.
+fn header32() -> (PathBuf, String) {
+    let [_, body] = declarations();
+    let text = format!("{}\n{body}\n\n{}\n#endif /* NEKTON32_H */\n", PREAMBLES[1], MACROS[1]);
+    (root().join("include/nekton32.h"), text)
+}
+
+/// What is declared, without the names of single precision and with them alone.
+fn declarations() -> [String; 2] {
     let config = cbindgen::Config {
         language: cbindgen::Language::C,
         cpp_compat: true,
@@ -122,7 +142,7 @@ fn header() -> (PathBuf, String) {
         ..Default::default()
     };
     let mut builder = cbindgen::Builder::new().with_config(config);
-    for file in ["types", "shared", "api64", "api32"] {
+    for file in ["types/definitions", "types/answers", "shared", "api64", "api32"] {
         builder = builder.with_src(root().join(format!("ffi/src/{file}.rs")));
     }
     let mut bytes = Vec::new();
@@ -133,14 +153,14 @@ fn header() -> (PathBuf, String) {
         body = body.replace(&format!("{rust}_f32"), &format!("nekton32_{c}"));
     }
     let body = tidy(&body);
-    let mut errors = String::from("/**\n * Outcomes: 0 ok, > 0 notices, < 0 errors.\n */\nenum {\n");
-    for status in Status::ALL {
-        let comma = if Some(status) == Status::ALL.last() { "" } else { "," };
-        let _ = writeln!(errors, "    /** {} */\n    {} = {}{comma}", status.text(), constant(*status), status.code());
-    }
-    errors.push_str("};\n");
-    let text = format!("{PREAMBLE}\n{errors}\n{}\n{MACROS}\n#endif /* NEKTON_H */\n", body.trim());
-    (root().join("include/nekton.h"), text)
+    // One declaration with its comment, or one of the lines about C++, which both headers need.
+    let items: Vec<&str> = body.trim().split("\n\n").collect();
+    let single = |item: &str| item.contains("nekton32_");
+    let of = |wanted: bool| {
+        let own = items.iter().filter(|item| item.contains("__cplusplus") || single(item) == wanted);
+        own.copied().collect::<Vec<_>>().join("\n\n")
+    };
+    [of(false), of(true)]
 }
 
 /// Comments of one line on one line, negative constants in parentheses, names of a family of outcomes as they are written.
@@ -201,16 +221,27 @@ fn errors() -> (PathBuf, String) {
 mod tests {
     #[test]
     fn generated_files_are_up_to_date() {
-        for (path, content) in [super::twin, super::header, super::errors].map(|make| make()) {
+        for (path, content) in [super::twin, super::header, super::header32, super::errors].map(|make| make()) {
             let found = std::fs::read_to_string(&path).unwrap_or_default();
             assert!(found == content, "{} is out of date: run `cargo xtask header`", path.display());
         }
     }
 
     #[test]
-    fn header_is_ascii() {
-        let (_, header) = super::header();
-        let strange: Vec<_> = header.lines().filter(|line| !line.is_ascii()).collect();
-        assert!(strange.is_empty(), "{strange:?}");
+    fn headers_are_ascii() {
+        for (_, header) in [super::header(), super::header32()] {
+            let strange: Vec<_> = header.lines().filter(|line| !line.is_ascii()).collect();
+            assert!(strange.is_empty(), "{strange:?}");
+        }
+    }
+
+    #[test]
+    fn each_header_declares_one_precision() {
+        let ([double, single], macros) = (super::declarations(), super::MACROS);
+        assert!(!double.contains("nekton32") && !macros[0].contains("NEKTON32"));
+        // Functions and types with the prefix of double precision are declared in the other header alone.
+        let declares = |line: &str| line.starts_with("typedef ") || line.starts_with("nekton_status ");
+        let lines: Vec<_> = single.lines().filter(|line| declares(line)).collect();
+        assert!(lines.len() > 60 && lines.iter().all(|line| line.contains("nekton32_")), "{lines:?}");
     }
 }

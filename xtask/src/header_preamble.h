@@ -5,7 +5,7 @@
  *
  * A scene (nekton_scene_def) is compiled into a model that never changes; any number of simulations step it. Both live in
  * memory that the caller gives (query the size, or use NEKTON_MODEL_BYTES and NEKTON_SIM_BYTES), or in memory from the heap
- * (create, free). Names with nekton32_ are the same in single precision.
+ * (create, free). nekton32.h has the same in single precision.
  *
  * Units are SI per unit depth: lengths m, density kg/m^3 (so mass kg/m, inertia kg m), circulation m^2/s, torque N, force N/m,
  * energy J/m. Angles are radians, counter-clockwise. Matrices are column-major.

@@ -3,8 +3,8 @@
 use crate::bare::{CORTEX_M, Compiler, compiler, installed};
 use crate::c;
 use crate::firmware;
-use crate::steps::{Outcome, Steps, cargo, execute, require, root};
-use crate::trade;
+use crate::studies::studies;
+use nekton_steps::{Outcome, Steps, Wish, cargo, execute, require, root};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
@@ -12,15 +12,13 @@ use std::process::{Command, ExitCode};
 const BARE_TARGETS: [&str; 4] =
     [CORTEX_M, "riscv32imafc-unknown-none-elf", "wasm32-unknown-unknown", "x86_64-unknown-none"];
 
-/// Runs everything that the project promises.
-pub fn run() -> ExitCode {
-    let mut steps = Steps::default();
-    steps.run("compilers", || match require(&[("cc", "gcc"), ("c++", "g++")]) {
-        Ok(()) => Outcome::Passed,
-        Err(why) => Outcome::Failed(why),
-    });
+/// Runs everything that the project promises, or what is wished of it.
+pub fn run(wish: Wish) -> ExitCode {
+    let mut steps = Steps::wished(wish);
+    steps.run("compilers", || require(&[("cc", "gcc"), ("c++", "g++")]).into());
     steps.command("format", &mut cargo(&["fmt", "--all", "--check"]));
     steps.command("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"]));
+    steps.run("layers of core", crate::layers::step);
     steps.command("core without std and heap", &mut cargo(&["build", "--package", "nekton", "--no-default-features"]));
     steps.command(
         "core without std",
@@ -31,10 +29,7 @@ pub fn run() -> ExitCode {
         &mut cargo(&["test", "--package", "nekton", "--no-default-features", "--test", "without_near"]),
     );
     steps.run("core for a bare target", bare);
-    steps.run("embedded archive, program without operating system", || match firmware::freestanding() {
-        Ok(()) => Outcome::Passed,
-        Err(why) => Outcome::Failed(why),
-    });
+    steps.run("embedded archive, program without operating system", || firmware::freestanding().into());
     for board in firmware::boards() {
         steps.run(&format!("firmware {board}"), || firmware::step(board));
     }
@@ -50,7 +45,7 @@ pub fn run() -> ExitCode {
     );
     c::add(&mut steps);
     scenes(&mut steps);
-    steps.run("speed against accuracy, quickly", trade::quick);
+    steps.command("speed against accuracy, quickly", &mut studies(&["trade", "--quick"]));
     steps.run("matlab (in octave)", matlab);
     steps.finish()
 }
@@ -63,7 +58,7 @@ fn bare() -> Outcome {
         targets.push(CORTEX_M);
         with = match compiler(CORTEX_M) {
             Ok(compiler) => compiler,
-            Err(why) => return Outcome::Skipped(why),
+            Err(outcome) => return outcome,
         };
     }
     for target in targets {
@@ -79,13 +74,13 @@ fn bare() -> Outcome {
 
 /// Builds the gateway of `matlab/` and runs its tests in Octave.
 fn matlab() -> Outcome {
-    // From gnuplot on for figures; the font, which has no program, comes with ghostscript.
+    // From gnuplot on for figures; the font is no program.
     let programs = [
         ("octave-cli", "octave"),
         ("mkoctfile", "octave-dev"),
         ("gnuplot", "gnuplot-nox"),
         ("gs", "ghostscript"),
-        ("gs", "fonts-freefont-otf"),
+        ("gs && test -n \"$(find /usr/share/fonts -name 'FreeSans.*')\"", "fonts-freefont-otf"),
     ];
     if let Err(why) = require(&programs) {
         return Outcome::Skipped(why);

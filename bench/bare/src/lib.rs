@@ -17,7 +17,7 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 
 /// Fills a matrix, factorizes it if `whole`; 0 if all is well.
 fn lu<R: Real>(whole: bool) -> i32 {
-    let (mut a, mut pivots) = ([R::zero(); LD * N], [R::zero(); N]);
+    let (mut a, mut pivots) = ([R::zero(); LD * N], [R::Index::default(); N]);
     let mut s = 1u32;
     for (k, x) in a.iter_mut().enumerate() {
         s = s.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

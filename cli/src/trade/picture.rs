@@ -6,6 +6,7 @@ use crate::plots::log::{Curve, Marks, chart};
 use crate::plots::{Outcome, colour};
 
 use super::reference::Reference;
+use super::setting::shown;
 use super::study::{Measured, Status, front};
 
 /// Errors smaller than this are drawn at it.
@@ -49,7 +50,7 @@ pub fn draw(title: &str, rows: &[Measured], reference: &Reference) -> Outcome<St
         marks: Marks::Level,
     });
     chart(
-        &format!("{title}: error against time, to t = {} s", super::shown(reference.until)),
+        &format!("{title}: error against time, to t = {} s", shown(reference.until)),
         "time per simulated second (s/s)",
         "relative error",
         &curves,

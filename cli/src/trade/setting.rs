@@ -147,3 +147,8 @@ impl<R: Real> Description<R> for Variant<'_, R> {
         self.base.link(b, l).map(|link| Link { nodes: self.nodes(Place::Link(b, l), link.nodes), ..link })
     }
 }
+
+/// A number without zeros at its end.
+pub fn shown(x: f64) -> String {
+    format!("{x:.6}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}

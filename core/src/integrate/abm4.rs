@@ -1,36 +1,30 @@
 //! Adams–Bashforth–Moulton of order 4 with a fixed step.
 
+use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::rk4::later_stages;
-use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Result, Status};
-use crate::workspace::{buffers, copy, part};
+use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::memory::{buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 /// Predicts by Adams–Bashforth 4, evaluates, corrects by Adams–Moulton 4 and evaluates (PECE): two
 /// evaluations a step, local error O(h⁵). The first three steps are Runge–Kutta 4.
 #[derive(Clone, Copy, Debug)]
 pub struct Abm4<R> {
-    step: R,
-    /// Has a step been made since the start or [`Abm4::reset`]?
-    continues: bool,
-    /// Number of earlier rates that are known, at most 3.
-    known: usize,
-    /// Is there an estimate of the last step's error?
-    estimated: bool,
-    counters: Counters,
+    past: FixedStep<R>,
 }
 
 buffers! {
     struct Buffers(dim: usize) {
         /// Estimated error of the last step.
-        error: *dim,
+        error: R = *dim,
         /// The part of the state that it cannot hold.
-        rest: *dim,
+        rest: R = *dim,
         /// Rate at the present state.
-        rate: *dim,
+        rate: R = *dim,
         /// Rates one, two and three steps ago.
-        past1: *dim, past2: *dim, past3: *dim,
-        trial: *dim, trial_rate: *dim, sum: *dim,
+        past1: R = *dim, past2: R = *dim, past3: R = *dim,
+        trial: R = *dim, trial_rate: R = *dim, sum: R = *dim,
     }
 }
 
@@ -43,29 +37,29 @@ impl<R: Real> Default for Abm4<R> {
 impl<R: Real> Abm4<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Abm4 { step: R::zero(), continues: false, known: 0, estimated: false, counters: Counters::default() }
+        Abm4 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
     /// What has been done so far.
     pub fn counters(&self) -> Counters {
-        self.counters
+        self.past.counters
     }
 
     /// Forgets the past rates: to be called when the state was changed from outside or the right-hand
     /// side jumped. The next three steps are Runge–Kutta again.
     pub fn reset(&mut self) {
-        (self.known, self.continues, self.estimated) = (0, false, false);
+        self.past.reset();
     }
 
     /// Estimated local error of the last step, unknown by unknown, by Milne's device: 19/270 of the difference
     /// of corrector and predictor. `None` after a Runge–Kutta step.
-    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
-        self.estimated.then(|| part(work, 0, dim))
+    pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        self.past.estimated.then(|| part(memory, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative. A step that differs from the last one
@@ -80,20 +74,17 @@ impl<R: Real> Abm4<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
-        let b = Buffers::split(&y.len(), work)?;
-        let known = if h == self.step { self.known } else { 0 };
-        if !self.continues {
-            b.rest.fill(R::zero());
-        }
+        let b = Buffers::take(&y.len(), &mut { memory })?;
+        let known = self.past.begin(h, b.rest);
         // The second evaluation of PECE, at the corrected state, is made when the next step begins.
-        evaluate(system, &mut self.counters, t, y, b.rate)?;
+        evaluate(system, &mut self.past.counters, t, y, b.rate)?;
         if known < 3 {
             copy(b.trial_rate, b.rate);
             copy(b.sum, b.rate);
-            later_stages(system, &mut self.counters, t, h, y, b.trial, b.trial_rate, b.sum)?;
+            later_stages(system, &mut self.past.counters, t, h, y, b.trial, b.trial_rate, b.sum)?;
         } else {
             let h24 = h / R::lit(24.0);
             let past = || b.rate.iter().zip(&*b.past1).zip(&*b.past2).zip(&*b.past3);
@@ -102,7 +93,7 @@ impl<R: Real> Abm4<R> {
                 *p = *y + *sum;
             }
             all_finite(b.trial, Status::NonFiniteState, "state")?;
-            evaluate(system, &mut self.counters, t + h, b.trial, b.trial_rate)?;
+            evaluate(system, &mut self.past.counters, t + h, b.trial, b.trial_rate)?;
             let milne = R::lit(19.0 / 270.0);
             for (((e, sum), f), (((f0, f1), f2), _)) in
                 b.error.iter_mut().zip(&mut *b.sum).zip(&*b.trial_rate).zip(past())
@@ -116,9 +107,7 @@ impl<R: Real> Abm4<R> {
         copy(b.past3, b.past2);
         copy(b.past2, b.past1);
         copy(b.past1, b.rate);
-        self.known = if known < 3 { known + 1 } else { 3 };
-        (self.step, self.continues, self.estimated) = (h, true, known == 3);
-        self.counters.steps += 1;
+        self.past.end(h, known, 3, known == 3);
         Ok(())
     }
 }

@@ -2,10 +2,10 @@
 
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
-use super::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
-use crate::scalar::Real;
-use crate::status::{Error, Result, Status};
-use crate::workspace::{buffers, copy, part};
+use super::system::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
+use crate::base::memory::{buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
 
 /// Predicts at order k, evaluates, corrects at order k + 1, evaluates (PECE), k = 1 … 12: the method of
 /// Matlab's `ode113`. Step and order follow the estimated error of each step,
@@ -46,15 +46,15 @@ pub struct Adams<R> {
 
 buffers! {
     struct Buffers(dim: usize) {
-        state: *dim,
-        rate: *dim,
+        state: R = *dim,
+        rate: R = *dim,
         /// The differences φ₁ … φₖ₊₂, unknown by unknown.
-        history: dim.saturating_mul(COLUMNS),
+        history: R = dim.saturating_mul(COLUMNS),
         /// The part of the state that `state` cannot hold.
-        rest: *dim,
-        trial: *dim, trial_rest: *dim, trial_rate: *dim,
+        rest: R = *dim,
+        trial: R = *dim, trial_rest: R = *dim, trial_rate: R = *dim,
         /// Estimated error of the last trial step.
-        error: *dim,
+        error: R = *dim,
     }
 }
 
@@ -97,8 +97,8 @@ impl<R: Real> Adams<R> {
         })
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
@@ -106,10 +106,10 @@ impl<R: Real> Adams<R> {
     ///
     /// # Errors
     /// `NotFinite`, `MemoryTooSmall`; the integrator is then as it was.
-    pub fn start(&mut self, t: R, y: &[R], work: &mut [R]) -> Result<()> {
+    pub fn start(&mut self, t: R, y: &[R], memory: &mut [R]) -> Result<()> {
         finite(t, "time")?;
         all_finite(y, Status::NotFinite, "state")?;
-        let b = Buffers::split(&y.len(), work)?;
+        let b = Buffers::take(&y.len(), &mut { memory })?;
         copy(b.state, y);
         b.rest.fill(R::zero());
         b.rate.fill(R::NAN);
@@ -135,9 +135,9 @@ impl<R: Real> Adams<R> {
     ///
     /// # Errors
     /// Those of the right-hand side, `NonFiniteState`, `Length`, `MemoryTooSmall`; nothing is changed.
-    pub fn prepare<S: System<R> + ?Sized>(&mut self, system: &mut S, work: &mut [R]) -> Result<()> {
+    pub fn prepare<S: System<R> + ?Sized>(&mut self, system: &mut S, memory: &mut [R]) -> Result<()> {
         same_length(self.dim, system.dim())?;
-        let b = Buffers::split(&self.dim, work)?;
+        let b = Buffers::take(&self.dim, &mut { memory })?;
         if self.prepared {
             return Ok(());
         }
@@ -158,14 +158,14 @@ impl<R: Real> Adams<R> {
     }
 
     /// The state at [`time`](Self::time).
-    pub fn state<'w>(&self, work: &'w [R]) -> &'w [R] {
-        part(work, 0, self.dim)
+    pub fn state<'m>(&self, memory: &'m [R]) -> &'m [R] {
+        part(memory, 0, self.dim)
     }
 
     /// The rate at [`time`](Self::time); NaN between a start and the first step (see
     /// [`prepare`](Self::prepare)).
-    pub fn rate<'w>(&self, work: &'w [R]) -> &'w [R] {
-        part(work, self.dim, self.dim)
+    pub fn rate<'m>(&self, memory: &'m [R]) -> &'m [R] {
+        part(memory, self.dim, self.dim)
     }
 
     /// Length of the last step, signed; 0 after a start. The dense output is good from
@@ -181,9 +181,9 @@ impl<R: Real> Adams<R> {
 
     /// Estimated local error of the last step, unknown by unknown: that of order k, though the result is of
     /// order k + 1. `None` after a start; meaningless after a step that failed.
-    pub fn error<'w>(&self, work: &'w [R]) -> Option<&'w [R]> {
+    pub fn error<'m>(&self, memory: &'m [R]) -> Option<&'m [R]> {
         let before = self.dim.saturating_mul(COLUMNS + 6);
-        (self.last_order > 0).then(|| part(work, before, self.dim))
+        (self.last_order > 0).then(|| part(memory, before, self.dim))
     }
 
     /// What has been done since the integrator was made.
@@ -202,13 +202,13 @@ impl<R: Real> Adams<R> {
     /// `StepTooSmall` if the tolerance cannot be met or `t` has no digits for the step, else the error of the last trial; `NotFinite`,
     /// `Length`, `MemoryTooSmall`. The integrator is then as it was after its last step (but for the
     /// counters), and may go on.
-    pub fn step<S: System<R> + ?Sized>(&mut self, system: &mut S, t_stop: R, work: &mut [R]) -> Result<()> {
+    pub fn step<S: System<R> + ?Sized>(&mut self, system: &mut S, t_stop: R, memory: &mut [R]) -> Result<()> {
         finite(t_stop, "t_stop")?;
         if t_stop == self.time {
             return Ok(());
         }
-        self.prepare(system, work)?;
-        let mut b = Buffers::split(&self.dim, work)?;
+        self.prepare(system, memory)?;
+        let mut b = Buffers::take(&self.dim, &mut { memory })?;
         let mut next = *self;
         let outcome = next.search(system, t_stop, &mut b);
         match outcome {
@@ -223,23 +223,25 @@ impl<R: Real> Adams<R> {
     ///
     /// # Errors
     /// `NotFinite`, `Length`, `MemoryTooSmall`; nothing is written.
-    pub fn interpolate(&self, t_out: R, work: &[R], y_out: &mut [R], dydt_out: &mut [R]) -> Result<()> {
+    pub fn interpolate(&self, t_out: R, memory: &[R], y_out: &mut [R], dydt_out: &mut [R]) -> Result<()> {
         finite(t_out, "t_out")?;
         same_length(self.dim, y_out.len())?;
         same_length(self.dim, dydt_out.len())?;
-        if Self::work_len(self.dim).is_none_or(|need| work.len() < need) {
+        if Self::memory_len(self.dim).is_none_or(|need| memory.len() < need) {
             return Err(Status::MemoryTooSmall.into());
         }
         let s = (t_out - self.time) - self.time_rest;
         if t_out == self.time || self.last_order == 0 {
-            for ((y, f), (y0, f0)) in y_out.iter_mut().zip(dydt_out).zip(self.state(work).iter().zip(self.rate(work))) {
+            for ((y, f), (y0, f0)) in
+                y_out.iter_mut().zip(dydt_out).zip(self.state(memory).iter().zip(self.rate(memory)))
+            {
                 (*y, *f) = (if t_out == self.time { *y0 } else { *y0 + s * *f0 }, *f0);
             }
             return Ok(());
         }
         let (w, r) = dense(s, &self.spans, self.last_order);
-        let history = part(work, 2 * self.dim, self.dim.saturating_mul(COLUMNS)).as_chunks::<COLUMNS>().0;
-        for ((y, f), (column, y0)) in y_out.iter_mut().zip(dydt_out).zip(history.iter().zip(self.state(work))) {
+        let history = part(memory, 2 * self.dim, self.dim.saturating_mul(COLUMNS)).as_chunks::<COLUMNS>().0;
+        for ((y, f), (column, y0)) in y_out.iter_mut().zip(dydt_out).zip(history.iter().zip(self.state(memory))) {
             let (mut slope, mut rate) = (R::zero(), R::zero());
             for ((phi, w), r) in column.iter().zip(&w).zip(&r).take(self.last_order + 1).rev() {
                 slope += *w * *phi;

@@ -2,7 +2,7 @@
 //! chapter 7).
 
 use super::formula::{Formula, MAX_ORDER, moulton};
-use crate::scalar::Real;
+use crate::base::scalar::Real;
 
 /// Error estimates of a trial step, in units of the tolerance (1 is allowed).
 pub(super) struct Estimate<R> {

@@ -10,8 +10,8 @@
 //! - corrector of order k + 1: `y = p + h gₖ₊₁ (f(p) − φᵉ₁)`,
 //! - new differences: `φᵢ = φᵉᵢ + (f − φᵉ₁)`.
 
-use crate::scalar::Real;
-use crate::workspace::at;
+use crate::base::memory::at;
+use crate::base::scalar::Real;
 
 /// Highest order of the predictor.
 pub const MAX_ORDER: usize = 12;

@@ -1,9 +1,10 @@
 //! The implicit Runge–Kutta method of Gauss and Legendre with three stages, of order 6.
 
-use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Error, Result, Status};
-use crate::workspace::{buffers, copy};
+use super::fixed_step::{FixedStep, add_increment, check_step};
+use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::memory::{buffers, copy};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
 
 /// Gauss–Legendre Runge–Kutta with three stages (Hairer, Lubich & Wanner 2006, sections II.1.3, VIII.6): order 6,
 /// symmetric in time. On motions that can be run backwards its energy error neither grows nor decays.
@@ -14,12 +15,7 @@ use crate::workspace::{buffers, copy};
 /// walk of rounding.
 #[derive(Clone, Copy, Debug)]
 pub struct Gauss6<R> {
-    step: R,
-    /// Has a step been made since the start or [`Gauss6::reset`]?
-    continues: bool,
-    /// Are the rates of the last step known?
-    known: bool,
-    counters: Counters,
+    past: FixedStep<R>,
 }
 
 /// Sweeps after which a step is given up.
@@ -55,14 +51,14 @@ const EXTRAPOLATE: [[f64; 5]; 3] = [
 buffers! {
     struct Buffers(dim: usize) {
         /// The part of the state that it cannot hold.
-        rest: *dim,
+        rest: R = *dim,
         /// Rate at the beginning of the last step, and at its stages.
-        before: *dim, past1: *dim, past2: *dim, past3: *dim,
+        before: R = *dim, past1: R = *dim, past2: R = *dim, past3: R = *dim,
         /// Rate at the present state, and at the stages.
-        rate: *dim, stage1: *dim, stage2: *dim, stage3: *dim,
-        trial: *dim, trial_rate: *dim,
+        rate: R = *dim, stage1: R = *dim, stage2: R = *dim, stage3: R = *dim,
+        trial: R = *dim, trial_rate: R = *dim,
         /// Largest change of a stage's rate by this sweep, and the least of all sweeps so far.
-        change: *dim, least: *dim,
+        change: R = *dim, least: R = *dim,
     }
 }
 
@@ -75,23 +71,23 @@ impl<R: Real> Default for Gauss6<R> {
 impl<R: Real> Gauss6<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Gauss6 { step: R::zero(), continues: false, known: false, counters: Counters::default() }
+        Gauss6 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
     /// What has been done so far.
     pub fn counters(&self) -> Counters {
-        self.counters
+        self.past.counters
     }
 
     /// Forgets the past rates and the rest of the state: to be called when the state was changed from outside
     /// or the right-hand side jumped.
     pub fn reset(&mut self) {
-        (self.known, self.continues) = (false, false);
+        self.past.reset();
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
@@ -106,15 +102,12 @@ impl<R: Real> Gauss6<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
-        let mut b = Buffers::split(&y.len(), work)?;
-        let known = self.known && h == self.step;
-        if !self.continues {
-            b.rest.fill(R::zero());
-        }
-        evaluate(system, &mut self.counters, t, y, b.rate)?;
+        let mut b = Buffers::take(&y.len(), &mut { memory })?;
+        let known = self.past.begin(h, b.rest) > 0;
+        evaluate(system, &mut self.past.counters, t, y, b.rate)?;
         let solved = if known {
             b.extrapolate();
             self.solve(system, t, h, y, &mut b)
@@ -123,7 +116,7 @@ impl<R: Real> Gauss6<R> {
         };
         // Extrapolated stages may lie where there is no rate, or too far away.
         if let Err(e) = solved {
-            if known && !super::recoverable(&e) && e.status != Status::NoConvergence {
+            if known && !super::system::recoverable(&e) && e.status != Status::NoConvergence {
                 return Err(e);
             }
             for stage in [&mut b.stage1, &mut b.stage2, &mut b.stage3] {
@@ -141,8 +134,7 @@ impl<R: Real> Gauss6<R> {
         copy(b.past1, b.stage1);
         copy(b.past2, b.stage2);
         copy(b.past3, b.stage3);
-        (self.step, self.continues, self.known) = (h, true, true);
-        self.counters.steps += 1;
+        self.past.end(h, usize::from(known), 1, false);
         Ok(())
     }
 
@@ -167,7 +159,7 @@ impl<R: Real> Gauss6<R> {
                     *trial = *y + (*rest + h * ((a1 * *f1 + a2 * *f2) + a3 * *f3));
                 }
                 all_finite(b.trial, Status::NonFiniteState, "state")?;
-                evaluate(system, &mut self.counters, t + c * h, b.trial, b.trial_rate)?;
+                evaluate(system, &mut self.past.counters, t + c * h, b.trial, b.trial_rate)?;
                 let rates = match stage {
                     0 => &mut *b.stage1,
                     1 => &mut *b.stage2,

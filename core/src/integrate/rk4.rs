@@ -1,9 +1,10 @@
 //! The classical Runge–Kutta method of order 4.
 
-use super::{Counters, System, add_increment, all_finite, check_step, evaluate};
-use crate::scalar::Real;
-use crate::status::{Result, Status};
-use crate::workspace::{axpy, buffers, copy, part};
+use super::fixed_step::{FixedStep, add_increment, check_step};
+use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::memory::{axpy, buffers, copy, part};
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 /// The classical Runge–Kutta method: four evaluations a step, local error O(h⁵).
 ///
@@ -12,14 +13,7 @@ use crate::workspace::{axpy, buffers, copy, part};
 /// evaluation, and is exact as the step tends to 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Rk4<R> {
-    step: R,
-    /// Has a step been made since the start or [`Rk4::reset`]?
-    continues: bool,
-    /// Number of earlier rates that are known, at most [`PAST`].
-    known: usize,
-    /// Is there an estimate of the error of the step before the last?
-    estimated: bool,
-    counters: Counters,
+    past: FixedStep<R>,
 }
 
 /// Earlier rates that the error estimate needs.
@@ -30,14 +24,14 @@ const MOULTON: [f64; PAST + 1] = [19087.0, 65112.0, -46461.0, 37504.0, -20211.0,
 buffers! {
     struct Buffers(dim: usize) {
         /// Estimated error of the step before the last.
-        error: *dim,
+        error: R = *dim,
         /// The part of the state that it cannot hold.
-        rest: *dim,
+        rest: R = *dim,
         /// What the last step added to the state.
-        increment: *dim,
+        increment: R = *dim,
         /// Rates at the beginning of the last steps, the newest first.
-        past: dim.saturating_mul(PAST),
-        first: *dim, stage: *dim, rate: *dim, sum: *dim,
+        past: R = dim.saturating_mul(PAST),
+        first: R = *dim, stage: R = *dim, rate: R = *dim, sum: R = *dim,
     }
 }
 
@@ -50,29 +44,29 @@ impl<R: Real> Default for Rk4<R> {
 impl<R: Real> Rk4<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Rk4 { step: R::zero(), continues: false, known: 0, estimated: false, counters: Counters::default() }
+        Rk4 { past: FixedStep::new() }
     }
 
-    /// Numbers of work memory for `dim` unknowns; `None` if that cannot be addressed.
-    pub fn work_len(dim: usize) -> Option<usize> {
+    /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
+    pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
     }
 
     /// What has been done so far.
     pub fn counters(&self) -> Counters {
-        self.counters
+        self.past.counters
     }
 
     /// Forgets the past rates and the rest of the state: to be called when the state was changed from outside
     /// or the right-hand side jumped.
     pub fn reset(&mut self) {
-        (self.known, self.continues, self.estimated) = (0, false, false);
+        self.past.reset();
     }
 
     /// Estimated local error of the step before the last, unknown by unknown. `None` until there were six
     /// equal steps before it.
-    pub fn error<'w>(&self, dim: usize, work: &'w [R]) -> Option<&'w [R]> {
-        self.estimated.then(|| part(work, 0, dim))
+    pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        self.past.estimated.then(|| part(memory, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
@@ -86,16 +80,13 @@ impl<R: Real> Rk4<R> {
         t: R,
         h: R,
         y: &mut [R],
-        work: &mut [R],
+        memory: &mut [R],
     ) -> Result<()> {
         check_step(system, t, h, y)?;
         let dim = y.len();
-        let b = Buffers::split(&dim, work)?;
-        let known = if h == self.step { self.known } else { 0 };
-        if !self.continues {
-            b.rest.fill(R::zero());
-        }
-        evaluate(system, &mut self.counters, t, y, b.first)?;
+        let b = Buffers::take(&dim, &mut { memory })?;
+        let known = self.past.begin(h, b.rest);
+        evaluate(system, &mut self.past.counters, t, y, b.first)?;
         let estimated = known == PAST;
         if estimated {
             b.error.fill(R::zero());
@@ -109,7 +100,7 @@ impl<R: Real> Rk4<R> {
         }
         copy(b.sum, b.first);
         copy(b.rate, b.first);
-        later_stages(system, &mut self.counters, t, h, y, b.stage, b.rate, b.sum)?;
+        later_stages(system, &mut self.past.counters, t, h, y, b.stage, b.rate, b.sum)?;
         add_increment(y, b.rest, b.sum)?;
         copy(b.increment, b.sum);
         // One step on: every rate takes the place of the next older one.
@@ -118,9 +109,7 @@ impl<R: Real> Rk4<R> {
                 core::mem::swap(newer, older);
             }
         }
-        self.known = if known < PAST { known + 1 } else { PAST };
-        (self.step, self.continues, self.estimated) = (h, true, estimated);
-        self.counters.steps += 1;
+        self.past.end(h, known, PAST, estimated);
         Ok(())
     }
 }

@@ -136,7 +136,7 @@ impl Panels {
                 }
             }
         }
-        let mut pivots = vec![0.0; all];
+        let mut pivots = vec![0; all];
         factor(&mut matrix, all, all, &mut pivots)?;
         let factors = Factors { lu: &matrix, ld: all, pivots: &pivots };
         sides.chunks_exact_mut(all).for_each(|side| factors.solve(side));

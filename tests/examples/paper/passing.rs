@@ -67,18 +67,18 @@ fn run(scheme: Scheme, n: usize, tolerance: f64) -> nekton::Result<Run> {
 fn panels(n: usize, tolerance: f64) -> nekton::Result<Run> {
     let mut system = Panels::new(2.0, 0.9, n, 2);
     let y = [2.0, -1.1, 0.0, -2.0, 1.1, 0.0, -0.5, 0.0, 0.0, 0.5, 0.0, 0.0];
-    let mut work = vec![0.0; Adams::<f64>::work_len(system.dim()).unwrap_or(0)];
+    let mut memory = vec![0.0; Adams::<f64>::memory_len(system.dim()).unwrap_or(0)];
     let mut adams = Adams::new(tolerance, tolerance, None)?;
-    adams.start(0.0, &y, &mut work)?;
+    adams.start(0.0, &y, &mut memory)?;
     let clock = Instant::now();
     let mut states = Vec::new();
     for k in 1..=TIMES {
         let t = END * k as f64 / TIMES as f64;
         while adams.time() < t {
-            adams.step(&mut system, END, &mut work)?;
+            adams.step(&mut system, END, &mut memory)?;
         }
         let (mut y, mut rate) = (vec![0.0; 12], vec![0.0; 12]);
-        adams.interpolate(t, &work, &mut y, &mut rate)?;
+        adams.interpolate(t, &memory, &mut y, &mut rate)?;
         states.push(y);
     }
     Ok(Run { states, seconds: clock.elapsed().as_secs_f64(), evaluations: system.evaluations })

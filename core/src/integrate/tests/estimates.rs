@@ -7,9 +7,9 @@ use super::*;
 fn mismatch(h: f64, n: usize, lag: usize, mut step: impl FnMut(f64, &mut [f64]) -> Option<f64>) -> f64 {
     // The true local error by ten substeps of the implicit method, which is exact here to rounding.
     let exact = |t: f64, y: f64| {
-        let (mut m, mut work, mut z) = (Gauss6::new(), vec![0.0; 20], [y]);
+        let (mut m, mut memory, mut z) = (Gauss6::new(), vec![0.0; 20], [y]);
         for k in 0..10 {
-            m.step(&mut ode(1, cosine_growth), t + 0.1 * h * f64::from(k), 0.1 * h, &mut z, &mut work).unwrap();
+            m.step(&mut ode(1, cosine_growth), t + 0.1 * h * f64::from(k), 0.1 * h, &mut z, &mut memory).unwrap();
         }
         z[0]
     };
@@ -30,10 +30,10 @@ fn mismatch(h: f64, n: usize, lag: usize, mut step: impl FnMut(f64, &mut [f64]) 
 #[test]
 fn estimated_error_of_rk4_is_the_local_error_of_the_step_before() {
     let h = 0.02;
-    let (mut m, mut work) = (Rk4::new(), vec![0.0; 13]);
+    let (mut m, mut memory) = (Rk4::new(), vec![0.0; 13]);
     let mismatch = mismatch(h, 200, 1, |t, y| {
-        m.step(&mut ode(1, cosine_growth), t, h, y, &mut work).unwrap();
-        m.error(1, &work).map(|e| e[0])
+        m.step(&mut ode(1, cosine_growth), t, h, y, &mut memory).unwrap();
+        m.error(1, &memory).map(|e| e[0])
     });
     std::println!("rk4: {mismatch}");
     assert!(mismatch < 0.1, "{mismatch}");
@@ -42,10 +42,10 @@ fn estimated_error_of_rk4_is_the_local_error_of_the_step_before() {
 #[test]
 fn estimated_error_of_abm4_is_the_local_error_of_the_step() {
     let h = 0.01;
-    let (mut m, mut work) = (Abm4::new(), vec![0.0; 9]);
+    let (mut m, mut memory) = (Abm4::new(), vec![0.0; 9]);
     let mismatch = mismatch(h, 400, 0, |t, y| {
-        m.step(&mut ode(1, cosine_growth), t, h, y, &mut work).unwrap();
-        m.error(1, &work).map(|e| e[0])
+        m.step(&mut ode(1, cosine_growth), t, h, y, &mut memory).unwrap();
+        m.error(1, &memory).map(|e| e[0])
     });
     std::println!("abm4: {mismatch}");
     assert!(mismatch < 0.1, "{mismatch}");

@@ -4,9 +4,9 @@ use super::*;
 
 /// A run of `n` steps; evaluations.
 fn steps<R: Real, S: System<R>>(system: &mut S, h: R, n: usize, y: &mut [R], mut seen: impl FnMut(&[R])) -> u64 {
-    let (mut m, mut work) = (Gauss6::new(), vec![R::zero(); Gauss6::<R>::work_len(y.len()).unwrap()]);
+    let (mut m, mut memory) = (Gauss6::new(), vec![R::zero(); Gauss6::<R>::memory_len(y.len()).unwrap()]);
     for i in 0..n {
-        m.step(system, h * R::count(i), h, y, &mut work).unwrap();
+        m.step(system, h * R::count(i), h, y, &mut memory).unwrap();
         seen(y);
     }
     m.counters().evaluations
@@ -36,11 +36,11 @@ fn gauss6_converges_with_order_six() {
 #[test]
 fn gauss6_runs_back_to_where_it_came_from() {
     // Symmetry: the step −h undoes the step h, here to rounding.
-    let (mut system, mut work) = (ode(4, kepler), vec![0.0; Gauss6::<f64>::work_len(4).unwrap()]);
+    let (mut system, mut memory) = (ode(4, kepler), vec![0.0; Gauss6::<f64>::memory_len(4).unwrap()]);
     let (mut m, mut y) = (Gauss6::new(), pericentre(0.5));
     for h in [0.3, -0.3] {
         for _ in 0..100 {
-            m.step(&mut system, 0.0, h, &mut y, &mut work).unwrap();
+            m.step(&mut system, 0.0, h, &mut y, &mut memory).unwrap();
         }
     }
     assert!(distance(&y, &pericentre(0.5)) < 1e-11, "{:e}", distance(&y, &pericentre(0.5)));
@@ -79,10 +79,10 @@ fn too_long_a_step_does_not_converge_and_says_so() {
         d.copy_from_slice(&[y[1], -y[0]]);
         Ok(())
     });
-    let (mut m, mut work) = (Gauss6::new(), vec![0.0; Gauss6::<f64>::work_len(2).unwrap()]);
+    let (mut m, mut memory) = (Gauss6::new(), vec![0.0; Gauss6::<f64>::memory_len(2).unwrap()]);
     for h in [2.0, 3.0, 10.0, 1e3, 1e200] {
         let mut y = [1.0, 0.25];
-        let outcome = m.step(&mut system, 0.0, h, &mut y, &mut work);
+        let outcome = m.step(&mut system, 0.0, h, &mut y, &mut memory);
         let status = outcome.map_err(|e| e.status);
         std::println!("{h}: {status:?} {:?}", m.counters());
         if h >= 10.0 {

@@ -5,6 +5,8 @@ use std::vec;
 use std::vec::Vec;
 
 use super::*;
+use crate::base::scalar::Real;
+use crate::base::status::{Result, Status};
 
 mod accuracy;
 mod estimates;
@@ -86,18 +88,18 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |m, (a, b)| f64::max(m, (a - b).abs()))
 }
 
-/// Integrator and its work memory, started.
+/// Integrator and its memory memory, started.
 fn started<R: Real>(relative: R, absolute: R, t: R, y: &[R]) -> (Adams<R>, Vec<R>) {
     let mut adams = Adams::new(relative, absolute, None).unwrap();
-    let mut work = vec![R::zero(); Adams::<R>::work_len(y.len()).unwrap()];
-    adams.start(t, y, &mut work).unwrap();
-    (adams, work)
+    let mut memory = vec![R::zero(); Adams::<R>::memory_len(y.len()).unwrap()];
+    adams.start(t, y, &mut memory).unwrap();
+    (adams, memory)
 }
 
 /// Steps until `t_stop` is reached.
-fn run<R: Real, S: System<R>>(adams: &mut Adams<R>, system: &mut S, t_stop: R, work: &mut [R]) -> Result<()> {
+fn run<R: Real, S: System<R>>(adams: &mut Adams<R>, system: &mut S, t_stop: R, memory: &mut [R]) -> Result<()> {
     while adams.time() != t_stop {
-        adams.step(system, t_stop, work)?;
+        adams.step(system, t_stop, memory)?;
     }
     Ok(())
 }

@@ -1,0 +1,4 @@
+//! Linear systems in the caller's memory.
+
+pub(crate) mod ldl;
+pub mod lu;

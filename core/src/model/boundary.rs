@@ -1,0 +1,159 @@
+//! One boundary of the fluid: its compiled outline, and where its nodes and blocks are in the store.
+
+use crate::base::complex::{Complex, complex, dot};
+use crate::base::features;
+use crate::base::memory::part;
+use crate::base::scalar::Real;
+use crate::base::status::{Place, Status};
+use crate::geometry::curve::{Curve, Outline, OutlineView};
+use crate::geometry::grading::Ladder;
+use crate::geometry::nodes::Nodes;
+use crate::geometry::pose::Pose;
+
+/// Where the numbers of one boundary are in the store (`rungs`: in a simulation's buffer).
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Slots {
+    /// The shape's own numbers.
+    pub(crate) store_at: usize,
+    pub(crate) store_len: usize,
+    /// Permanent ladders, three reals each.
+    pub(crate) ladders_at: usize,
+    /// Parameters of tips and corners.
+    pub(crate) tips_at: usize,
+    /// Fourier sum of the potential of rotation (no reals: closed form or fixed nodes).
+    pub(crate) modes_at: usize,
+    pub(crate) modes: usize,
+    /// Table of pole terms (no reals: plain rule).
+    pub(crate) table_at: usize,
+    pub(crate) table_len: usize,
+    /// Rungs of a configuration.
+    pub(crate) rungs_at: usize,
+    pub(crate) rungs_len: usize,
+    /// Node arrays.
+    pub(crate) data_at: usize,
+    /// Self block of A (links only).
+    pub(crate) self_at: usize,
+    /// Re G of the self block (links only, where there is circulation).
+    pub(crate) regular_at: usize,
+}
+
+/// One boundary of the fluid.
+#[derive(Clone, Copy, Debug)]
+pub struct BoundaryRecord<R> {
+    /// Where it stands in the scene.
+    pub place: Place,
+    /// Link that carries it; `None` for a wall.
+    pub link: Option<usize>,
+    /// −1 for links and obstacles, +1 for the tank.
+    pub sign: R,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// First unknown.
+    pub first: usize,
+    /// Compiled shape.
+    pub outline: Outline<R>,
+    /// Where its numbers are in the store.
+    pub(crate) slots: Slots,
+    /// Origin of the boundary's frame in the shape's drawing frame.
+    pub origin: Complex<R>,
+    /// Number of permanent ladders.
+    pub ladders: usize,
+    /// Number of tips and corners.
+    pub tips: usize,
+    /// Circulation.
+    pub circulation: R,
+    /// Its isolated circulatory flow.
+    pub core: Core<R>,
+    /// Placement of a wall.
+    pub pose: Pose<R>,
+    /// Greatest distance of the outline from the frame's origin.
+    pub reach: R,
+    /// Greatest distance between neighbouring nodes.
+    pub spacing: R,
+    /// What set-up noticed.
+    pub notice: Status,
+}
+
+/// Isolated circulatory flow of one boundary, analytic outside: log z' about a point, or log W of an ellipse.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Core<R> {
+    /// Origin of z' in the boundary's frame.
+    pub centre: Complex<R>,
+    /// Semi-axes of an ellipse; (0, 0) for a point vortex.
+    pub axes: [R; 2],
+}
+
+impl<R: Real> Default for BoundaryRecord<R> {
+    fn default() -> Self {
+        BoundaryRecord {
+            place: Place::Scene,
+            link: None,
+            sign: -R::one(),
+            nodes: 0,
+            first: 0,
+            outline: Outline::default(),
+            slots: Slots::default(),
+            origin: Complex::default(),
+            ladders: 0,
+            tips: 0,
+            circulation: R::zero(),
+            core: Core::default(),
+            pose: Pose::default(),
+            reach: R::zero(),
+            spacing: R::zero(),
+            notice: Status::Ok,
+        }
+    }
+}
+
+impl<R: Real> BoundaryRecord<R> {
+    /// Reals of the node arrays.
+    pub(crate) fn data_len(nodes: usize, with_chi: bool) -> Option<usize> {
+        nodes.checked_mul(if with_chi { 8 } else { 7 })
+    }
+    pub(crate) fn nodes<'a>(&self, store: &'a [R]) -> Nodes<'a, R> {
+        Nodes::read(part(store, self.slots.data_at, self.nodes * if self.link.is_some() { 8 } else { 7 }), self.nodes)
+    }
+    /// Curve and permanent grading.
+    pub(crate) fn view<'a>(&self, store: &'a [R]) -> OutlineView<'a, R> {
+        self.outline.view(part(store, self.slots.store_at, self.slots.store_len))
+    }
+    /// Cosines and sines of the pole terms (empty for the plain rule).
+    pub(crate) fn table<'a>(&self, store: &'a [R]) -> &'a [R] {
+        if features::NEAR { part(store, self.slots.table_at, self.slots.table_len) } else { &[] }
+    }
+    /// Permanent ladders.
+    pub(crate) fn ladders<'a>(&self, store: &'a [R]) -> impl Iterator<Item = Ladder<R>> + use<'a, R> {
+        let list = part(store, self.slots.ladders_at, 3 * self.ladders);
+        list.as_chunks::<3>().0.iter().map(|&[t, beta, top]| Ladder { t, beta, top })
+    }
+    /// χ₃ at a point of the outline, whose permanent parameter s is asked for where there is no closed form.
+    pub(crate) fn rotation_potential(&self, store: &[R], x: Complex<R>, s: impl FnOnce() -> R) -> R {
+        match self.view(store).curve {
+            Curve::Ellipse(e) => {
+                // About the centre: ratio·x y. The frame's origin is off the centre by `origin`: rotation about it differs
+                // by the translation −i·origin, whose potential is linear.
+                let (a, b) = (e.a * e.a, e.b * e.b);
+                let centred = x + self.origin;
+                let shift = complex(self.origin.im, -self.origin.re);
+                (a - b) / (a + b) * centred.re * centred.im + dot(shift, x)
+            }
+            _ => fourier_sum(part(store, self.slots.modes_at, self.slots.modes), s()),
+        }
+    }
+}
+
+/// Σ a_m cos ms + b_m sin ms of pairs (a_m, b_m), by Clenshaw's recurrence.
+fn fourier_sum<R: Real>(modes: &[R], s: R) -> R {
+    let (sin, cos) = s.sin_cos();
+    let twice = cos * R::TWO;
+    let (mut a1, mut a2, mut b1, mut b2) = (R::zero(), R::zero(), R::zero(), R::zero());
+    let mut pairs = modes.as_chunks::<2>().0.iter();
+    let first = pairs.next().map_or(R::zero(), |[a, _]| *a);
+    // Downwards: the list is short, and an iterator from the back needs no index.
+    while let Some([a, b]) = pairs.next_back() {
+        (a1, a2) = (*a + twice * a1 - a2, a1);
+        (b1, b2) = (*b + twice * b1 - b2, b1);
+    }
+    first + cos * a1 - a2 + sin * b1
+}

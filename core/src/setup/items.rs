@@ -1,0 +1,65 @@
+//! Every boundary as the scene gives it, in the order of the unknowns.
+
+use crate::base::scalar::Real;
+use crate::base::status::Place;
+use crate::geometry::pose::Pose;
+use crate::scene::{Description, Mass, Shape, each_link};
+use crate::setup::automatic_nodes::target;
+
+/// One boundary as the scene gives it.
+#[derive(Clone, Copy)]
+pub(crate) struct Item<'a, R> {
+    pub(crate) place: Place,
+    pub(crate) link: Option<usize>,
+    pub(crate) shape: Shape<'a, R>,
+    pub(crate) nodes: usize,
+    /// Centre of mass from the centroid; `None` for walls (frame = drawing frame).
+    pub(crate) centre: Option<[R; 2]>,
+    pub(crate) circulation: R,
+    pub(crate) pose: Pose<R>,
+}
+
+pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = Item<'a, R>> + Clone {
+    let settings = scene.settings();
+    let tolerance = target(settings.tolerance);
+    let nodes = move |given: usize, shape: &Shape<'a, R>| {
+        if given == 0 { crate::setup::automatic_nodes::nodes(shape, tolerance, settings.quadrature) } else { given }
+    };
+    let wall = move |place, w: crate::scene::Wall<'a, R>| Item {
+        place,
+        link: None,
+        shape: w.shape,
+        nodes: nodes(w.nodes, &w.shape),
+        centre: None,
+        circulation: w.circulation,
+        pose: Pose::new(w.position[0], w.position[1], w.angle),
+    };
+    let tank = scene.tank().into_iter().map(move |w| wall(Place::Tank, w));
+    let obstacles = (0..scene.obstacle_count()).filter_map(move |i| Some(wall(Place::Obstacle(i), scene.obstacle(i)?)));
+    let links = each_link(scene).enumerate().map(move |(i, (b, l, link))| Item {
+        place: Place::Link(b, l),
+        link: Some(i),
+        shape: link.shape,
+        nodes: nodes(link.nodes, &link.shape),
+        centre: Some(match link.mass {
+            Mass::Density(_) => [R::zero(); 2],
+            Mass::Given { centre_of_mass, .. } => centre_of_mass,
+        }),
+        circulation: link.circulation,
+        pose: Pose::default(),
+    });
+    tank.chain(obstacles).chain(links)
+}
+
+/// The first boundary before boundary `i` whose compiled outline, nodes and self block serve for it as well, if any: a link
+/// of the same shape, nodes and centre of mass.
+pub(crate) fn twin_of<R: Real, S: Description<R>>(scene: &S, i: usize, item: &Item<'_, R>) -> Option<usize> {
+    let same = |other: &Item<'_, R>| {
+        other.link.is_some()
+            && item.link.is_some()
+            && other.shape == item.shape
+            && other.nodes == item.nodes
+            && other.centre == item.centre
+    };
+    items(scene).take(i).position(|other| same(&other))
+}

@@ -1,0 +1,11 @@
+//! From a scene to a model.
+
+pub(crate) mod automatic_nodes;
+pub(crate) mod compile;
+mod items;
+mod layout;
+#[cfg(feature = "alloc")]
+pub(crate) mod owned;
+pub(crate) mod records;
+mod traits;
+mod validate;

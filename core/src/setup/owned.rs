@@ -1,0 +1,106 @@
+//! Models and simulations that own their memory (feature `alloc`).
+
+use crate::base::scalar::Real;
+use crate::base::status::Result;
+use crate::model::boundary::BoundaryRecord;
+use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
+use crate::scene::Description;
+use crate::setup::automatic_nodes::{Finer, automatic, target};
+use crate::setup::compile::ModelMemory;
+use crate::simulation::sim::{Sim, SimHead};
+use crate::simulation::state::Method;
+use alloc::{sync::Arc, vec, vec::Vec};
+
+/// A compiled scene that owns its memory. `Send + Sync`.
+#[derive(Clone, Debug)]
+pub struct ModelBuf<R> {
+    head: ModelHead<R>,
+    links: Vec<LinkRecord<R>>,
+    coordinates: Vec<CoordinateRecord<R>>,
+    boundaries: Vec<BoundaryRecord<R>>,
+    reals: Vec<R>,
+}
+
+impl<R: Real> ModelBuf<R> {
+    /// Compiles a scene.
+    ///
+    /// # Errors
+    /// As [`Model::init`].
+    pub fn new(scene: &impl Description<R>) -> Result<Self> {
+        let need = Model::requirement(scene)?;
+        let mut links = vec![LinkRecord::default(); need.links];
+        let mut coordinates = vec![CoordinateRecord::default(); need.coordinates];
+        let mut boundaries = vec![BoundaryRecord::default(); need.boundaries];
+        let mut reals = vec![R::zero(); need.reals];
+        let mut memory = ModelMemory {
+            links: &mut links,
+            coordinates: &mut coordinates,
+            boundaries: &mut boundaries,
+            reals: &mut reals,
+        };
+        let head = Model::init(scene, &mut memory)?;
+        Ok(ModelBuf { head, links, coordinates, boundaries, reals })
+    }
+
+    /// Compiles a scene, and compares the error indicators of its start with its tolerance: automatic node counts that do not
+    /// meet it are raised up to four times, and those kept that come nearest. Costs an evaluation for each attempt.
+    ///
+    /// # Errors
+    /// As [`Model::init`].
+    pub fn resolved(scene: &impl Description<R>) -> Result<Self> {
+        let mut best = Arc::new(ModelBuf::new(scene)?);
+        if !automatic(scene) {
+            return Ok(Arc::unwrap_or_clone(best));
+        }
+        let error = |model: &Arc<ModelBuf<R>>| {
+            let sim = SimBuf::new(model.clone(), Method::Rk4 { step: R::one() });
+            // What keeps a simulation from starting is told when one is made.
+            sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound())
+        };
+        let asked = target(scene.settings().tolerance);
+        let mut least = error(&best);
+        for factor in [1.25, 1.5, 2.0, 3.0, 4.0] {
+            if least <= asked {
+                break;
+            }
+            let model = Arc::new(ModelBuf::new(&Finer { scene, factor })?);
+            let error = error(&model);
+            if error < least {
+                (best, least) = (model, error);
+            }
+        }
+        Ok(Arc::unwrap_or_clone(best))
+    }
+
+    /// The model's view.
+    pub fn view(&self) -> Model<'_, R> {
+        Model::view(&self.head, &self.links, &self.coordinates, &self.boundaries, &self.reals)
+    }
+}
+
+/// A simulation that owns its memory and shares its model. `Send`.
+#[derive(Clone, Debug)]
+pub struct SimBuf<R> {
+    model: Arc<ModelBuf<R>>,
+    head: SimHead<R>,
+    reals: Vec<R>,
+}
+
+impl<R: Real> SimBuf<R> {
+    /// Starts a simulation at time 0 and the scene's initial state.
+    ///
+    /// # Errors
+    /// As [`Sim::head`] and [`Sim::init`].
+    pub fn new(model: Arc<ModelBuf<R>>, method: Method<R>) -> Result<Self> {
+        let mut head = Sim::head(method)?;
+        let mut reals = vec![R::zero(); Sim::requirement(&model.view())?.reals];
+        Sim::init(model.view(), &mut head, &mut reals)?;
+        Ok(SimBuf { model, head, reals })
+    }
+
+    /// The simulation's view, through which everything is done. O(1).
+    #[allow(clippy::expect_used)] // the memory was sized for this model when it was made
+    pub fn view(&mut self) -> Sim<'_, R> {
+        Sim::view(self.model.view(), &mut self.head, &mut self.reals).expect("memory of the required length")
+    }
+}

@@ -1,0 +1,11 @@
+//! A model in motion: state, stepping, diagnostics.
+
+pub(crate) mod diagnostics;
+pub(crate) mod notices;
+pub(crate) mod right_hand_side;
+pub(crate) mod sim;
+#[cfg(feature = "bench")]
+pub mod stages;
+pub(crate) mod state;
+pub(crate) mod stepping;
+pub(crate) mod time_error;

@@ -1,0 +1,350 @@
+//! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
+//! number share one model. Nothing is allocated.
+
+use crate::base::memory::{at, copy, put};
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Place, Result, Status};
+use crate::dynamics::evaluation::{Counters, Dims, Evaluation, Kept};
+use crate::dynamics::indicators::Resolution;
+use crate::fluid::contact::first_misplaced;
+use crate::geometry::pose::Poses;
+use crate::integrate::{Abm4, Adams, Gauss6, Rk4, System};
+use crate::model::signal::CHANNEL_LEN;
+use crate::model::{Control, Formulation, Model, ModelHead};
+use crate::simulation::right_hand_side::{RightHandSide, split_state};
+use crate::simulation::state::{Clock, Method, Progress, State, StateDims, Watch};
+use crate::simulation::time_error::TimeError;
+
+/// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
+pub const STEP_LIMIT: u64 = 1_000_000;
+
+/// Length of a simulation's memory.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct SimRequirement {
+    /// Number of reals.
+    pub reals: usize,
+}
+
+impl SimRequirement {
+    /// For any method.
+    pub(crate) fn of<R: Real>(head: &ModelHead<R>, coordinates: usize) -> Option<SimRequirement> {
+        let dims = Dims::of(head, coordinates);
+        let state = State::<R>::len(&StateDims::of(head, coordinates))?;
+        // The matrix is the largest buffer: its size decides whether the sum can be addressed.
+        dims.ld.checked_mul(dims.unknowns.checked_add(dims.columns)?)?.checked_mul(4)?;
+        Some(SimRequirement { reals: state.checked_add(Evaluation::<R>::len(&dims)?)? })
+    }
+}
+
+/// Everything of a simulation that has a fixed size.
+#[derive(Clone, Copy, Debug)]
+pub struct SimHead<R> {
+    /// How far it is: what it remembers.
+    pub(crate) progress: Progress<R>,
+    /// What its scratch holds.
+    pub(crate) kept: Kept<R>,
+}
+
+impl<R: Real> SimHead<R> {
+    /// Makes what a simulation remembers that of another one of its model, or of itself at an earlier time; the reals of
+    /// [`Sim::remembered`] have to be copied with it. The scratch stays its own.
+    pub fn put_back(&mut self, other: &SimHead<R>) {
+        self.progress = other.progress;
+        self.kept.shown = false;
+    }
+}
+
+/// A simulation in the caller's memory.
+pub struct Sim<'a, R: Real> {
+    pub(crate) model: Model<'a, R>,
+    pub(crate) progress: &'a mut Progress<R>,
+    pub(crate) state: State<'a, R>,
+    pub(crate) evaluation: Evaluation<'a, R>,
+}
+
+impl<'a, R: Real> Sim<'a, R> {
+    /// Memory needed for a simulation of a model.
+    ///
+    /// # Errors
+    /// `SizeOverflow`.
+    pub fn requirement(model: &Model<'_, R>) -> Result<SimRequirement> {
+        SimRequirement::of(model.head, model.coordinates.len()).ok_or(Status::SizeOverflow.into())
+    }
+
+    /// How many of the reals, from the first on, a simulation remembers from one call to the next (the rest is scratch): with a
+    /// copy of these and of the head, a simulation is put back to what it was, or made equal to another one of its model.
+    ///
+    /// # Errors
+    /// `SizeOverflow`.
+    pub fn remembered(model: &Model<'_, R>) -> Result<usize> {
+        State::<R>::len(&StateDims::of(model.head, model.coordinates.len())).ok_or(Status::SizeOverflow.into())
+    }
+
+    /// Checks a method; the head of a simulation that has not begun.
+    ///
+    /// # Errors
+    /// `BadStep`, `BadTolerance`; `Unsupported` for `Gauss6` without the feature `implicit`.
+    pub fn head(method: Method<R>) -> Result<SimHead<R>> {
+        if cfg!(not(feature = "implicit")) && matches!(method, Method::Gauss6 { .. }) {
+            return Err(Error::new(Status::Unsupported).of("method", f64::NAN));
+        }
+        let (relative, absolute) = match method {
+            Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
+                if !(step.is_finite() && step > R::zero()) {
+                    return Err(Error::new(Status::BadStep).of("step", step.to_f64()));
+                }
+                (R::lit(1e-3), R::lit(1e-3))
+            }
+            Method::Adams { relative, absolute } => (relative, absolute),
+        };
+        let mut progress = Progress {
+            method,
+            time: R::zero(),
+            clock: Clock::Set,
+            adams: Adams::new(relative, absolute, None)?,
+            rk4: Rk4::new(),
+            abm4: Abm4::new(),
+            gauss6: Gauss6::new(),
+            step_limit: STEP_LIMIT,
+            time_error: TimeError::default(),
+            impulse: [R::zero(); 3],
+            counters: Counters::default(),
+            worst: Resolution::default(),
+            worst_time: R::zero(),
+            coarsest: R::zero(),
+            coarsest_time: R::zero(),
+            watch: Watch::Nothing,
+        };
+        progress.set_clock();
+        Ok(SimHead { progress, kept: Kept::default() })
+    }
+
+    /// Starts a simulation in the caller's memory at time 0 and the scene's initial state.
+    ///
+    /// # Errors
+    /// `MemoryTooSmall`, `Overlap`, `OutsideTank`, `Singular`.
+    pub fn init(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
+        reals.fill(R::zero());
+        head.kept = Kept::default();
+        let mut sim = Sim::view(model, head, reals)?;
+        sim.evaluation.place_walls(&model);
+        let n = model.head.plan.free_coordinates;
+        let locked = model.head.plan.formulation == Formulation::LockedMomentum;
+        let mut rates = [R::zero(); 3];
+        for c in model.coordinates.iter().filter(|c| c.control != Control::Prescribed) {
+            put(sim.state.y, c.free, c.start[0]);
+            if locked {
+                if let Some(r) = rates.get_mut(c.free) {
+                    *r = c.start[1];
+                }
+            } else {
+                put(sim.state.y, n + c.free, c.start[1]);
+            }
+        }
+        // Misplacement first: it names what is wrong better than a contact does.
+        let (p, dp) = split_state(&model, sim.state.y);
+        let dp = if locked { &rates } else { dp };
+        let placed = sim.evaluation.place(&model, R::zero(), p, dp);
+        if let Some((a, b)) = first_misplaced(&model, Poses(sim.evaluation.placement.poses)) {
+            return Err(if b == Place::Tank {
+                Error::new(Status::OutsideTank).at(a)
+            } else {
+                Error::new(Status::Overlap).at(a).with(b)
+            });
+        }
+        placed.map_err(|e| if e.status == Status::Contact { Error { status: Status::Overlap, ..e } } else { e })?;
+        if locked {
+            sim.progress.impulse = sim.evaluation.impulse_of_motion(&model, p, &rates)?;
+        }
+        sim.show()?;
+        Ok(sim)
+    }
+
+    /// The view of a simulation that [`Sim::init`] set up in this memory, for this model.
+    ///
+    /// # Errors
+    /// `MemoryTooSmall`.
+    pub fn view(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
+        let need = Self::requirement(&model)?.reals;
+        if reals.len() < need {
+            return Err(Error::new(Status::MemoryTooSmall).of("length", reals.len() as f64));
+        }
+        let dims = StateDims::of(model.head, model.coordinates.len());
+        let len = State::<R>::len(&dims).ok_or(Status::SizeOverflow)?;
+        let (mut state, scratch) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
+        let SimHead { progress, kept } = head;
+        let evaluation = Evaluation::split(&Dims::of(model.head, model.coordinates.len()), kept, scratch)?;
+        let state = State::take(&dims, &mut state)?;
+        // What is remembered may have been put back (see `remembered`).
+        copy(evaluation.coordinates.channels, state.commands);
+        Ok(Sim { model, progress, state, evaluation })
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model<'a, R> {
+        self.model
+    }
+    /// Time of the state shown, s.
+    pub fn time(&self) -> R {
+        self.progress.time
+    }
+    /// x, y, θ of every link's centre of mass (3 per link).
+    pub fn positions(&self) -> &[R] {
+        self.state.positions
+    }
+    /// ẋ, ẏ, θ̇ of every link (3 per link).
+    pub fn velocities(&self) -> &[R] {
+        self.state.velocities
+    }
+    /// Counts since the start, of what stepping and [`Sim::rhs`] did (diagnostics are not counted).
+    pub fn counters(&self) -> Counters {
+        let mut c = self.progress.counters;
+        if let Method::Adams { .. } = self.progress.method {
+            let a = self.progress.adams.counters();
+            (c.steps, c.rejected) = (a.steps, a.rejected);
+        }
+        c
+    }
+    /// Estimated errors of the steps made since the start or the last [`Sim::set_state`]: local errors, that is of each
+    /// step by itself. What they grow to depends on the motion. Where it neither amplifies nor forgets errors, the sums over the
+    /// coordinates plus those over the rates times the time that is left bound the error of the coordinates: measured, they are 2
+    /// to 8 times (`Rk4`), 2 to 22 times (`Abm4`) and 3 to 400 times (`Adams`) as large, since errors of steps cancel in part.
+    ///
+    /// - `Adams`: of the formula below the one that is used.
+    /// - `Abm4`: Milne's estimate, from the difference of predictor and corrector; not in the first three steps after a start,
+    ///   which are Runge–Kutta.
+    /// - `Rk4`: by comparison with a formula of order 7 through the rates known (see [`Rk4`]); lags one step behind, and
+    ///   begins after seven equal steps.
+    /// - `Gauss6`: none. Compare with half the step, or watch the energy.
+    ///
+    /// No estimate takes an evaluation. None sees the error of space, for which there is [`Sim::resolution`].
+    pub fn time_error(&self) -> TimeError<R> {
+        self.progress.time_error
+    }
+
+    /// How many steps one call of [`Sim::advance`] or [`Sim::advance_dense`] may make; at first [`STEP_LIMIT`].
+    ///
+    /// # Errors
+    /// `OutOfRange` for 0.
+    pub fn set_step_limit(&mut self, steps: u64) -> Result<()> {
+        if steps == 0 {
+            return Err(Error::new(Status::OutOfRange).of("step_limit", 0.0));
+        }
+        self.progress.step_limit = steps;
+        Ok(())
+    }
+
+    /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
+    pub(crate) fn note_error(&mut self, estimated: bool, t: R, h: R) {
+        let (n, memory) = (self.state.y.len(), &*self.state.integrator);
+        let error = match self.progress.method {
+            _ if !estimated => None,
+            Method::Rk4 { .. } => self.progress.rk4.error(n, memory),
+            Method::Abm4 { .. } => self.progress.abm4.error(n, memory),
+            Method::Adams { .. } => self.progress.adams.error(memory),
+            Method::Gauss6 { .. } => None,
+        };
+        let relative = self.progress.time_error.add(error, h, &self.model);
+        if relative > self.progress.coarsest {
+            (self.progress.coarsest, self.progress.coarsest_time) = (relative, t);
+        }
+    }
+
+    /// The integrated state: free coordinates, their rates (not for a lone swimmer, whose rates follow from its
+    /// impulse), and last the work of the drives if anything is driven.
+    pub fn state(&self) -> &[R] {
+        self.state.y
+    }
+
+    /// Sets time and state (as [`Sim::state`] gives them) and forgets the integrator's past.
+    ///
+    /// # Errors
+    /// `Length`, `NotFinite`, `Contact`; the simulation is then as it was.
+    pub fn set_state(&mut self, t: R, y: &[R]) -> Result<()> {
+        if y.len() != self.state.y.len() {
+            return Err(Error::new(Status::Length).of("length", y.len() as f64));
+        }
+        if !t.is_finite() || !y.iter().all(|x| x.is_finite()) {
+            return Err(Status::NotFinite.into());
+        }
+        copy(self.state.saved, self.state.y);
+        let before = self.progress.time;
+        copy(self.state.y, y);
+        self.progress.time = t;
+        let mut shown = self.show();
+        if shown.is_ok()
+            && let Some((a, b)) = first_misplaced(&self.model, Poses(self.evaluation.placement.poses))
+        {
+            shown = Err(Error::new(Status::Contact).at(a).with(b));
+        }
+        if let Err(e) = shown {
+            copy(self.state.y, self.state.saved);
+            self.progress.time = before;
+            self.show()?;
+            return Err(e);
+        }
+        self.progress.watch = Watch::Nothing;
+        self.restart();
+        self.progress.time_error = TimeError::default();
+        Ok(())
+    }
+
+    /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque these
+    /// are ν, ν̇ and ν̈. The integrator starts anew if it could have looked past the present time.
+    ///
+    /// # Errors
+    /// `Unsupported` if there is no such channel, `NotFinite`, `BadTable` if the times do not increase.
+    pub fn set_channel(&mut self, channel: usize, from: [R; 4], to: [R; 4]) -> Result<()> {
+        if !from.iter().chain(&to).all(|x| x.is_finite()) {
+            return Err(Status::NotFinite.into());
+        }
+        if from[0] >= to[0] {
+            return Err(Error::new(Status::BadTable).of("t", to[0].to_f64()));
+        }
+        if channel >= self.model.head.channels {
+            return Err(Error::new(Status::Unsupported).of("channel", channel as f64));
+        }
+        for (k, x) in from.into_iter().chain(to).enumerate() {
+            put(self.state.commands, channel * CHANNEL_LEN + k, x);
+        }
+        copy(self.evaluation.coordinates.channels, self.state.commands);
+        self.evaluation.kept.shown = false;
+        self.restart();
+        Ok(())
+    }
+
+    /// The right-hand side of the state's equation, for the user's own integrator. `y` and `ydot` as [`Sim::state`]. The
+    /// simulation's own state does not change.
+    ///
+    /// # Errors
+    /// `Length`, `NonFiniteState`, `Contact`, `Singular`.
+    pub fn rhs(&mut self, t: R, y: &[R], ydot: &mut [R]) -> Result<()> {
+        let n = self.state.y.len();
+        for given in [y.len(), ydot.len()] {
+            if given != n {
+                return Err(Error::new(Status::Length).of("length", given as f64));
+            }
+        }
+        // The user's integrator may jump: no state is asked where it came from.
+        let mut system = RightHandSide {
+            model: self.model,
+            evaluation: &mut self.evaluation,
+            impulse: self.progress.impulse,
+            anchor: None,
+            counters: &mut self.progress.counters,
+        };
+        let result = system.rhs(t, y, ydot);
+        if result.is_err() {
+            ydot.fill(R::zero());
+        }
+        result
+    }
+
+    /// u and u̇ of every joint, in the order of the links they move (`joint_count` each).
+    pub fn joint_values(&self, u: &mut [R], du: &mut [R]) {
+        let joints = self.model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3);
+        for ((u, du), (k, _)) in u.iter_mut().zip(du.iter_mut()).zip(joints) {
+            (*u, *du) = (at(self.state.joints, 2 * k), at(self.state.joints, 2 * k + 1));
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! Plain data that the caller fills: scenes and methods. These comments are those of the header; ASCII only.
+
+/// Not set: refused.
+pub const NEKTON_SHAPE_NONE: i32 = 0;
+/// Semi-axes a along x and b along y.
+pub const NEKTON_SHAPE_ELLIPSE: i32 = 1;
+/// r(t) = radius (1 + amplitude cos(lobes t)).
+pub const NEKTON_SHAPE_STAR: i32 = 2;
+/// width by height about the origin, corners rounded by corner_radius.
+pub const NEKTON_SHAPE_RECTANGLE: i32 = 3;
+/// Simple polygon through points, corners rounded by corner_radius.
+pub const NEKTON_SHAPE_POLYGON: i32 = 4;
+/// Smooth closed curve through points.
+pub const NEKTON_SHAPE_CURVE: i32 = 5;
+
+/// An outline. Only the fields of its kind are read.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct ShapeDef<R> {
+    /// NEKTON_SHAPE_...
+    pub kind: i32,
+    /// Star: number of lobes.
+    pub lobes: u32,
+    /// Ellipse: semi-axis along x, m.
+    pub a: R,
+    /// Ellipse: semi-axis along y, m.
+    pub b: R,
+    /// Star: mean radius, m.
+    pub radius: R,
+    /// Star: relative amplitude, |amplitude| < 1.
+    pub amplitude: R,
+    /// Rectangle: extent along x, m.
+    pub width: R,
+    /// Rectangle: extent along y, m.
+    pub height: R,
+    /// Rectangle, polygon: radius of the corners, m; 0: a sharp corner's default.
+    pub corner_radius: R,
+    /// Polygon, curve: x, y of each point in order (the last joins the first). Declare the array const: before C23, C converts no
+    /// `double (*)[2]` to this type without a cast.
+    pub points: *const [R; 2],
+    /// Number of points.
+    pub point_count: usize,
+}
+
+/// The constant value.
+pub const NEKTON_SIGNAL_CONSTANT: i32 = 0;
+/// Sum of harmonic terms, times the window if window.ramp > 0.
+pub const NEKTON_SIGNAL_HARMONIC: i32 = 1;
+/// Rows (t, u, du/dt, d2u/dt2) at increasing times, quintic in between, constant outside.
+pub const NEKTON_SIGNAL_TABLE: i32 = 2;
+/// Set while running by nekton_sim_set_channel; 0 until then.
+pub const NEKTON_SIGNAL_CHANNEL: i32 = 3;
+
+/// offset + amplitude sin(frequency t + phase).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct HarmonicDef<R> {
+    /// Amplitude.
+    pub amplitude: R,
+    /// Angular frequency, rad/s.
+    pub frequency: R,
+    /// Phase, rad.
+    pub phase: R,
+    /// Constant part.
+    pub offset: R,
+}
+
+/// 0 outside (from, to), 1 between from + ramp and to - ramp, infinitely smooth in between.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct WindowDef<R> {
+    /// Start of the support, s.
+    pub from: R,
+    /// End of the support, s.
+    pub to: R,
+    /// Length of each ramp, s, at most half the support; all three 0: no window.
+    pub ramp: R,
+}
+
+/// A function of time with two derivatives. All zero: the constant 0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SignalDef<R> {
+    /// NEKTON_SIGNAL_...
+    pub kind: i32,
+    /// Constant: its value.
+    pub value: R,
+    /// Harmonic: the terms.
+    pub harmonics: *const HarmonicDef<R>,
+    /// Number of terms.
+    pub harmonic_count: usize,
+    /// Harmonic: the window.
+    pub window: WindowDef<R>,
+    /// Table: the rows, const as the points of a shape.
+    pub rows: *const [R; 4],
+    /// Number of rows.
+    pub row_count: usize,
+}
+
+/// A fixed boundary: the tank or an obstacle.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct WallDef<R> {
+    /// Outline.
+    pub shape: ShapeDef<R>,
+    /// Where the outline's own origin lies, m.
+    pub position: [R; 2],
+    /// Turn about the outline's own origin, rad.
+    pub angle: R,
+    /// Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes.
+    pub nodes: usize,
+    /// Circulation around an obstacle, m^2/s; must be 0 for the tank.
+    pub circulation: R,
+}
+
+/// Homogeneous, of the link's density.
+pub const NEKTON_MASS_DENSITY: i32 = 0;
+/// The link's mass, inertia and centre_of_mass.
+pub const NEKTON_MASS_GIVEN: i32 = 1;
+
+/// The anchors coincide; u = heading of the link minus heading of the parent.
+pub const NEKTON_JOINT_HINGE: i32 = 0;
+/// The link's anchor slides along an axis of the parent; u = distance along it.
+pub const NEKTON_JOINT_SLIDER: i32 = 1;
+
+/// Held at locked_value.
+pub const NEKTON_DRIVE_LOCKED: i32 = 0;
+/// u(t) is prescribed by the signal.
+pub const NEKTON_DRIVE_MOTION: i32 = 1;
+/// Moves by the torque signal(t) - stiffness (u - rest) - damping du/dt.
+pub const NEKTON_DRIVE_TORQUE: i32 = 2;
+
+/// One rigid part of a body, with the joint by which it hangs on its parent.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct LinkDef<R> {
+    /// Outline, drawn in the link's own frame (any origin).
+    pub shape: ShapeDef<R>,
+    /// Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes.
+    pub nodes: usize,
+    /// Circulation of the fluid around the link, counter-clockwise, m^2/s.
+    pub circulation: R,
+    /// NEKTON_MASS_...
+    pub mass_kind: i32,
+    /// Parent among the body's links; -1: none (the first link of a body, and only that).
+    pub parent: i32,
+    /// Density, kg/m^3, >= 0.
+    pub density: R,
+    /// Mass given: kg/m, >= 0.
+    pub mass: R,
+    /// Mass given: moment of inertia about the centre of mass, kg m, >= 0.
+    pub inertia: R,
+    /// Mass given: centre of mass minus area centroid, in the link's frame, m.
+    pub centre_of_mass: [R; 2],
+    /// NEKTON_JOINT_...; like all that follows of no meaning without a parent.
+    pub joint: i32,
+    /// NEKTON_DRIVE_...
+    pub drive: i32,
+    /// Anchor on the parent, from the parent's area centroid in the parent's frame, m.
+    pub parent_anchor: [R; 2],
+    /// Anchor on this link, from its area centroid in its own frame, m.
+    pub self_anchor: [R; 2],
+    /// Slider: its direction in the parent's frame (of any length but 0).
+    pub axis: [R; 2],
+    /// Slider: constant heading of the link minus that of the parent, rad.
+    pub angle: R,
+    /// Locked: the value of u, rad (slider: m).
+    pub locked_value: R,
+    /// Motion: u(t). Torque: the applied torque, N (slider: force, N/m).
+    pub signal: SignalDef<R>,
+    /// Torque: spring constant, >= 0.
+    pub stiffness: R,
+    /// Torque: damping constant, >= 0.
+    pub damping: R,
+    /// Torque: u of the unloaded spring.
+    pub rest: R,
+    /// Torque: u and du/dt at the start.
+    pub start: [R; 2],
+}
+
+/// By the laws of motion.
+pub const NEKTON_ROOT_FREE: i32 = 0;
+/// x(t), y(t), theta(t) are given by the body's motion, added to its pose; its velocity is ignored.
+pub const NEKTON_ROOT_PRESCRIBED: i32 = 1;
+
+/// A body: a tree of links, of which the first is the root.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BodyDef<R> {
+    /// x, y, theta: centre of mass and heading of the first link.
+    pub pose: [R; 3],
+    /// Their rates.
+    pub velocity: [R; 3],
+    /// NEKTON_ROOT_...
+    pub root: i32,
+    /// Prescribed root: x(t), y(t), theta(t).
+    pub motion: [SignalDef<R>; 3],
+    /// Links; the first has no parent, every other one a parent before it.
+    pub links: *const LinkDef<R>,
+    /// Number of links, >= 1.
+    pub link_count: usize,
+}
+
+/// Energy gradient and the gyroscopic (Kutta-Joukowski) force.
+pub const NEKTON_CIRCULATION_FULL: i32 = 0;
+/// Without the force linear in the velocities.
+pub const NEKTON_CIRCULATION_PAPER: i32 = 1;
+
+/// Exact gradient of the discrete added mass: conserves the discrete energy at any resolution.
+pub const NEKTON_FORCE_EXACT_GRADIENT: i32 = 0;
+/// A boundary integral, as an independent cross-check; not with a prescribed joint or root.
+pub const NEKTON_FORCE_BOUNDARY: i32 = 1;
+
+/// Nodes crowd where boundaries come close, and the kernel's pole beside a boundary is integrated in closed form: spectral
+/// accuracy down to tiny gaps. Costs nothing for boundaries that are far apart. UNSUPPORTED in archives for
+/// microcontrollers, unless they were built with the feature near.
+pub const NEKTON_QUADRATURE_GRADED: i32 = 0;
+/// Fixed nodes and the plain trapezoidal rule: least code and memory; some 36/gap nodes per unit of length are needed.
+pub const NEKTON_QUADRATURE_PLAIN: i32 = 1;
+
+/// Everything that describes a scene. To be filled by nekton_scene_def_init first. Only read while a call runs.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SceneDef<R> {
+    /// sizeof of this struct; set by nekton_scene_def_init.
+    pub struct_size: u32,
+    /// NEKTON_ABI_VERSION of the caller; set by nekton_scene_def_init.
+    pub abi_version: u32,
+    /// Density of the fluid, kg/m^3, >= 0; 0: bodies in vacuum.
+    pub fluid_density: R,
+    /// Gravitational acceleration along -y, m/s^2.
+    pub gravity: R,
+    /// Strength of the repulsion of near boundaries, >= 0; 0: none.
+    pub repulsion_epsilon: R,
+    /// Exponent of the repulsion, > 0.
+    pub repulsion_alpha: R,
+    /// NEKTON_CIRCULATION_...; of meaning only if some circulation is not 0.
+    pub circulation: i32,
+    /// NEKTON_FORCE_...
+    pub force: i32,
+    /// NEKTON_QUADRATURE_...
+    pub quadrature: i32,
+    /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
+    /// returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+    pub tolerance: R,
+    /// 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check.
+    pub shortcuts: i32,
+    /// The fluid is inside this outline; NULL: no tank.
+    pub tank: *const WallDef<R>,
+    /// Fixed obstacles.
+    pub obstacles: *const WallDef<R>,
+    /// Number of obstacles.
+    pub obstacle_count: usize,
+    /// Moving bodies.
+    pub bodies: *const BodyDef<R>,
+    /// Number of bodies, >= 1.
+    pub body_count: usize,
+}
+
+/// Classical Runge-Kutta of order 4, fixed step, 4 evaluations a step.
+pub const NEKTON_METHOD_RK4: i32 = 1;
+/// Adams-Bashforth-Moulton of order 4, fixed step, 2 evaluations a step.
+pub const NEKTON_METHOD_ABM4: i32 = 2;
+/// Adams-Bashforth-Moulton of variable order 1 to 12 and variable step, 2 evaluations a step.
+pub const NEKTON_METHOD_ADAMS: i32 = 3;
+/// Implicit Gauss-Legendre of order 6, fixed step, 20 to 40 evaluations a step: the energy does not drift. UNSUPPORTED in
+/// archives for microcontrollers, unless they were built with the feature implicit.
+pub const NEKTON_METHOD_GAUSS6: i32 = 4;
+
+/// How a simulation is integrated in time.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct MethodDef<R> {
+    /// NEKTON_METHOD_...
+    pub kind: i32,
+    /// RK4, ABM4, GAUSS6: step, s.
+    pub step: R,
+    /// ADAMS: relative tolerance of each step.
+    pub relative: R,
+    /// ADAMS: absolute tolerance of each step.
+    pub absolute: R,
+}
