@@ -254,9 +254,9 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
         let root = CoordinateRecord { link, ..CoordinateRecord::default() };
         // A coordinate moves what hangs on its link at the most; a root's x moves no y and no θ, its θ not its own x and y.
         let rows_end = 3 * (link + scene.link_count(b));
-        let moves = |first: usize, beyond: usize| (first, rows_end - beyond - first);
+        let moves = |first: usize, beyond: usize| (first, rows_end.saturating_sub(beyond + first));
         for (k, (position, velocity)) in body.pose.into_iter().zip(body.velocity).enumerate() {
-            let moves = moves(3 * link + k, if k < 2 { 2 - k } else { 0 });
+            let moves = moves(3 * link + k, 2usize.saturating_sub(k));
             let record = CoordinateRecord { component: k, base: position, start: [position, velocity], moves, ..root };
             match body.root {
                 Root::Free => push(record, None),
