@@ -11,7 +11,7 @@ use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 use crate::dynamics::articulation::{accelerations, project, velocities};
 use crate::dynamics::christoffel::{add_frame_terms, boundary_formula, without_turning};
-use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
+use crate::dynamics::evaluation::{Coordinates, Counters, Evaluation, Indicators};
 use crate::dynamics::forces::circulation::{Circulation, Moving, data_error, solve};
 use crate::dynamics::forces::{buoyancy, repulsion};
 use crate::dynamics::kirchhoff::{add_lone_circulation, lone_momentum};
@@ -214,20 +214,9 @@ impl<R: Real> Evaluation<'_, R> {
         {
             *dds = R::zero();
         }
-        accelerations(
-            model,
-            self.coordinates.s,
-            self.coordinates.ds,
-            self.coordinates.dds,
-            self.placement.poses,
-            self.velocity.qd,
-            self.forces.drift,
-        );
+        self.accelerate_links(model, Inertia::Drift);
         self.outer_forces(model);
-        self.fluid_force(model, Inertia::Drift);
-        axpy(self.forces.force, R::one(), self.forces.outer);
-        add_body_inertia(model, self.forces.drift, self.forces.force);
-        project(model, self.coordinates.s, self.placement.poses, self.forces.force, self.forces.generalized);
+        self.generalize_forces(model, Inertia::Drift);
         for (c, g) in model
             .coordinates
             .iter()
@@ -243,16 +232,31 @@ impl<R: Real> Evaluation<'_, R> {
         {
             *dds = at(self.reduced.rhs, c.free);
         }
-        accelerations(
-            model,
-            self.coordinates.s,
-            self.coordinates.ds,
-            self.coordinates.dds,
-            self.placement.poses,
-            self.velocity.qd,
-            self.forces.qdd,
-        );
+        self.accelerate_links(model, Inertia::Accelerations);
         self.check()
+    }
+
+    /// Accelerations of the links for the coordinates' accelerations.
+    fn accelerate_links(&mut self, model: &Model<'_, R>, w: Inertia) {
+        let (Coordinates { s, ds, dds, .. }, forces) = (&self.coordinates, &mut self.forces);
+        let out = match w {
+            Inertia::Drift => &mut *forces.drift,
+            Inertia::Accelerations => &mut *forces.qdd,
+        };
+        accelerations(model, s, ds, dds, self.placement.poses, self.velocity.qd, out);
+    }
+
+    /// M w + f in `force`, and (∂F/∂s)ᵀ of it in `generalized`.
+    fn generalize_forces(&mut self, model: &Model<'_, R>, w: Inertia) {
+        self.fluid_force(model, w);
+        let forces = &mut self.forces;
+        axpy(forces.force, R::one(), forces.outer);
+        let accelerations = match w {
+            Inertia::Drift => &*forces.drift,
+            Inertia::Accelerations => &*forces.qdd,
+        };
+        add_body_inertia(model, accelerations, forces.force);
+        project(model, self.coordinates.s, self.placement.poses, forces.force, forces.generalized);
     }
 
     fn check(&self) -> Result<()> {
@@ -262,10 +266,7 @@ impl<R: Real> Evaluation<'_, R> {
 
     /// The forces that drive every coordinate, ν = (∂F/∂s)ᵀ [M q̈ + f], into `generalized`. After [`Evaluation::accelerate`].
     pub(crate) fn drive_forces(&mut self, model: &Model<'_, R>) {
-        self.fluid_force(model, Inertia::Accelerations);
-        axpy(self.forces.force, R::one(), self.forces.outer);
-        add_body_inertia(model, self.forces.qdd, self.forces.force);
-        project(model, self.coordinates.s, self.placement.poses, self.forces.force, self.forces.generalized);
+        self.generalize_forces(model, Inertia::Accelerations);
     }
 
     /// Christoffel force of the velocities in `qd` into `force`.
