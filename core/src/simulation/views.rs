@@ -44,11 +44,11 @@ impl<R: Real> Sim<'_, R> {
     /// # let links = [Link { shape, mass: Mass::Density(1.2), nodes: 32, circulation: 0.0, joint: None }];
     /// # let body = Body { pose: [0.0; 3], velocity: [0.2, 0.1, 0.3], root: Root::Free, links: &links };
     /// # let bodies = [body, Body { pose: [3.0, 0.5, 0.3], ..body }];
-    /// # let model = std::sync::Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) })?);
+    /// # let model = std::sync::Arc::new(ModelBuf::<f64>::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) })?);
     /// # let mut sim = SimBuf::new(model, Method::Rk4 { step: 0.01 })?;
     /// # let mut sim = sim.view();
     /// // A simulation of two bodies. Sizes that are known make matrices that need no heap.
-    /// let mut buffer = [0.0; 36];
+    /// let mut buffer = [0.0_f64; 36];
     /// let mass = sim.mass_matrix_view(&mut buffer)?.fixed_view::<6, 6>(0, 0).clone_owned();
     /// let velocity = sim.velocities_view().fixed_rows::<6>(0).clone_owned();
     ///
