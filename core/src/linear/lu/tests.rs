@@ -243,11 +243,14 @@ fn what_the_own_path_refuses_is_refused_by_faer_too() {
             cases.push(a);
         }
     }
-    let mut twice = random(n * n, 2);
-    twice.copy_within(5 * n..6 * n, 400 * n);
+    // Singular in every rounding: two rows of which one is twice the other, an empty column, rank one, nothing.
+    let mut twice: Vec<f64> = (0..n * n).map(|i| f64::from(u8::from(i % (n + 1) == 0))).collect();
+    for (row, column, x) in [(5, 5, 1.0), (5, 400, 2.0), (400, 5, 2.0), (400, 400, 4.0)] {
+        twice[column * n + row] = x;
+    }
     let mut empty = random(n * n, 2);
     empty[77 * n..78 * n].fill(0.0);
-    cases.extend([twice, empty, std::vec![0.0; n * n]]);
+    cases.extend([twice, empty, std::vec![1.0; n * n], std::vec![0.0; n * n]]);
     for (i, a) in cases.iter().enumerate() {
         for by in [Factorization::Own, Factorization::Faer { threads: 1 }, Factorization::Faer { threads: 2 }] {
             assert_eq!(status(by, a), Err(Status::Singular), "case {i}, {by:?}");
