@@ -90,7 +90,7 @@ fn same_but_for_rounding<R: Real>(sim: SimBuf<R>, tolerance: f64) {
 #[cfg(feature = "faer")]
 #[test]
 fn motions_by_faer_are_those_by_the_own_factorization() {
-    // Nodes of the three links alone are 528; what is measured is 2e-14 and 1e-5.
+    // Nodes of the three links alone are 528.
     same_but_for_rounding(simulation::<f64>(176, false, Quadrature::Plain), 2e-13);
     same_but_for_rounding(simulation::<f64>(176, true, Quadrature::Graded), 2e-13);
     same_but_for_rounding(simulation::<f32>(176, true, Quadrature::Plain), 1e-4);

@@ -12,7 +12,7 @@ use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratc
 use faer::traits::ComplexField;
 use faer::{MatMut, Par};
 
-/// Columns from which on faer takes over: below, the own elimination is faster on one thread than faer on two.
+/// Columns from which on faer takes over: fewer are no work for several threads.
 pub(super) const SMALLEST: usize = 512;
 
 /// Columns of a matrix.
