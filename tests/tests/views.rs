@@ -103,8 +103,8 @@ fn the_gyroscopic_matrix_is_antisymmetric_and_acts_from_the_left() {
 
 #[test]
 fn a_lone_body_with_circulation_is_pushed_to_the_side_that_lift_says() {
-    // Kutta and Joukowski: a disc in unbounded fluid with circulation Γ that moves with u along x feels the force −ρ Γ u … along y;
-    // as a matrix: entries (1, 0) and (0, 1), of opposite sign. Rows and columns exchanged would turn it round.
+    // Kutta and Joukowski: a disc in unbounded fluid with circulation Γ (counter-clockwise) that moves with u along x is pushed to its
+    // left, by ρ Γ u along y; as a matrix: entries (1, 0) and (0, 1), of opposite sign. Rows and columns exchanged would turn it round.
     let mut held = [0.0; 36];
     let far = [[Link { circulation: 0.7, ..link(disc(0.5), 1.3, 40) }], [link(disc(0.5), 1.3, 40)]];
     let bodies = [body(&far[0], [0.0; 3], [0.3, 0.0, 0.0]), body(&far[1], [1e3, 0.0, 0.0], [0.0; 3])];
