@@ -270,9 +270,8 @@ impl<'a, R: Real> Evaluation<'a, R> {
         parts.into_iter().try_fold(0usize, |sum, len| sum.checked_add(len?))
     }
 
-    /// The arrays in a slab of at least `len` reals.
-    pub(crate) fn split(d: &Dims, kept: &'a mut Kept<R>, slab: &'a mut [R]) -> Result<Self> {
-        let rest = &mut { slab };
+    /// Takes the arrays from the front of a slab of at least `len` reals.
+    pub(crate) fn take(d: &Dims, kept: &'a mut Kept<R>, rest: &mut &'a mut [R]) -> Result<Self> {
         let coordinates = Coordinates::take(d, rest)?;
         let placement = Placement::take(d, rest)?;
         let columns = Columns::take(d, rest)?;

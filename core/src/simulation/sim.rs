@@ -128,6 +128,10 @@ impl<'a, R: Real> Sim<'a, R> {
     /// # Errors
     /// `MemoryTooSmall`, `Overlap`, `OutsideTank`, `Singular`.
     pub fn init(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
+        let need = Self::requirement(&model)?.reals;
+        if reals.len() < need {
+            return Err(Error::new(Status::MemoryTooSmall).of("length", reals.len() as f64));
+        }
         reals.fill(R::zero());
         head.kept = Kept::default();
         let mut sim = Sim::view(model, head, reals)?;
@@ -169,16 +173,13 @@ impl<'a, R: Real> Sim<'a, R> {
     /// # Errors
     /// `MemoryTooSmall`.
     pub fn view(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
-        let need = Self::requirement(&model)?.reals;
-        if reals.len() < need {
-            return Err(Error::new(Status::MemoryTooSmall).of("length", reals.len() as f64));
-        }
-        let dims = StateDims::of(model.head, model.coordinates.len());
-        let len = State::<R>::len(&dims).ok_or(Status::SizeOverflow)?;
-        let (mut state, scratch) = reals.split_at_mut_checked(len).ok_or(Status::MemoryTooSmall)?;
+        let given = reals.len() as f64;
+        let named = |e: Error| if e.status == Status::MemoryTooSmall { e.of("length", given) } else { e };
+        let coordinates = model.coordinates.len();
         let SimHead { progress, kept } = head;
-        let evaluation = Evaluation::split(&Dims::of(model.head, model.coordinates.len()), kept, scratch)?;
-        let state = State::take(&dims, &mut state)?;
+        let rest = &mut { reals };
+        let state = State::take(&StateDims::of(model.head, coordinates), rest).map_err(named)?;
+        let evaluation = Evaluation::take(&Dims::of(model.head, coordinates), kept, rest).map_err(named)?;
         // What is remembered may have been put back (see `remembered`).
         copy(evaluation.coordinates.channels, state.commands);
         Ok(Sim { model, progress, state, evaluation })
