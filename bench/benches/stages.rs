@@ -137,7 +137,7 @@ fn c_step_gauss6<R: Real>(bencher: Bencher<'_, '_>, case: &Case) {
 #[divan::bench(types = [f64, f32], args = CASES)]
 fn c_first_step_adams<R: Real>(bencher: Bencher<'_, '_>, case: &Case) {
     let tolerance = R::lit(1e-6);
-    let mut sim = case.sim::<R>(Method::Adams { relative: tolerance, absolute: tolerance });
+    let mut sim = case.sim::<R>(Method::adams(tolerance, tolerance));
     let mut sim = sim.view();
     let state = sim.state().to_vec();
     bencher.bench_local(|| {

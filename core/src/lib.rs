@@ -23,7 +23,7 @@
 //! let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 9.81) };
 //!
 //! let model = Arc::new(ModelBuf::new(&scene)?);
-//! let mut sim = SimBuf::new(model, Method::Adams { relative: 1e-9, absolute: 1e-9 })?;
+//! let mut sim = SimBuf::new(model, Method::adams(1e-9, 1e-9))?;
 //! let mut sim = sim.view();
 //! sim.advance(1.0)?;
 //! assert!(sim.positions()[1] < 0.0 && sim.energy()?.kinetic_fluid > 0.0);

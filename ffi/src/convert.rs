@@ -179,7 +179,7 @@ pub(crate) fn method<R: Real>(m: &MethodDef<R>) -> Outcome<Method<R>> {
         NEKTON_METHOD_RK4 => Method::Rk4 { step: m.step },
         NEKTON_METHOD_ABM4 => Method::Abm4 { step: m.step },
         NEKTON_METHOD_GAUSS6 => Method::Gauss6 { step: m.step },
-        NEKTON_METHOD_ADAMS => Method::Adams { relative: m.relative, absolute: m.absolute },
+        NEKTON_METHOD_ADAMS => Method::adams(m.relative, m.absolute),
         kind => return unknown("method.kind", kind),
     })
 }

@@ -164,7 +164,7 @@ macro_rules! round_trip {
                 (fixed(NEKTON_METHOD_RK4), Method::Rk4 { step: 0.01 }),
                 (fixed(NEKTON_METHOD_ABM4), Method::Abm4 { step: 0.01 }),
                 (fixed(NEKTON_METHOD_GAUSS6), Method::Gauss6 { step: 0.01 }),
-                (adams(), Method::Adams { relative: adams().relative, absolute: adams().absolute }),
+                (adams(), Method::adams(adams().relative, adams().absolute)),
             ];
             for (c_method, method) in methods {
                 let mut owner = SimBuf::new(model.clone(), method).unwrap_or_else(|e| panic!("{e}"));

@@ -172,9 +172,7 @@ impl Case {
     pub fn adams<R: Real>(&self, tolerance: f64) -> Method<R> {
         let unit = self.size.min(self.size / self.duration).min(1.0).min(1.0 / self.duration);
         match adams::<R>(tolerance) {
-            Method::Adams { relative, absolute } => {
-                Method::Adams { relative, absolute: absolute * R::lit(unit).max(R::TINY) }
-            }
+            Method::Adams { relative, absolute, .. } => Method::adams(relative, absolute * R::lit(unit).max(R::TINY)),
             other => other,
         }
     }

@@ -78,7 +78,7 @@ pub fn simulation<R: Real>(scene: &Scene<'_, R>, method: Method<R>) -> SimBuf<R>
 
 /// `adams` with the same relative and absolute tolerance.
 pub fn adams<R: Real>(tolerance: f64) -> Method<R> {
-    Method::Adams { relative: R::lit(tolerance), absolute: R::lit(tolerance) }
+    Method::adams(R::lit(tolerance), R::lit(tolerance))
 }
 
 /// A simulation that is only evaluated at its initial state.

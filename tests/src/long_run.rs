@@ -95,7 +95,7 @@ pub fn methods<R: Real>(step: f64) -> [(&'static str, Method<R>); 4] {
     [
         ("rk4", Method::Rk4 { step: h }),
         ("abm4", Method::Abm4 { step: h }),
-        ("adams", Method::Adams { relative: tolerance, absolute: tolerance }),
+        ("adams", Method::adams(tolerance, tolerance)),
         ("gauss6", Method::Gauss6 { step: h }),
     ]
 }

@@ -342,7 +342,7 @@ fn steps_and_tolerances() {
     for (relative, absolute) in
         [(0.0, 0.0), (-1e-6, 1e-6), (1e-6, -1e-6), (f64::NAN, 1e-6), (1e-6, f64::NAN), (1e-17, 1e-17)]
     {
-        assert_eq!(status(Method::Adams { relative, absolute }), Some(Status::BadTolerance), "{relative} {absolute}");
+        assert_eq!(status(Method::adams(relative, absolute)), Some(Status::BadTolerance), "{relative} {absolute}");
     }
 }
 

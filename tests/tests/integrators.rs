@@ -186,7 +186,7 @@ fn estimated_time_errors_tell_lengths_and_angles_within_a_known_factor() {
     // measured are 2 to 8 (rk4), 2 to 22 (abm4) and 3 to 380 (adams) times the true errors.
     let (rk4, abm4, variable) = (20.0, 60.0, 1000.0);
     for unit in [1e-3_f64, 1.0, 1e3] {
-        let tight = |tolerance: f64| Method::Adams { relative: tolerance, absolute: tolerance * unit.min(1.0) };
+        let tight = |tolerance: f64| Method::adams(tolerance, tolerance * unit.min(1.0));
         let mut exact = Vec::new();
         crawler(unit, tight(1e-13), |sim| {
             sim.advance(2.0).unwrap();

@@ -82,9 +82,7 @@ pub fn method<R: Real>(integrator: Integrator, unit: f64) -> Method<R> {
         Integrator::Rk4 { step } => Method::Rk4 { step: R::lit(step) },
         Integrator::Abm4 { step } => Method::Abm4 { step: R::lit(step) },
         Integrator::Gauss6 { step } => Method::Gauss6 { step: R::lit(step) },
-        Integrator::Adams { tolerance } => {
-            Method::Adams { relative: R::lit(tolerance), absolute: R::lit(tolerance * unit) }
-        }
+        Integrator::Adams { tolerance } => Method::adams(R::lit(tolerance), R::lit(tolerance * unit)),
     }
 }
 

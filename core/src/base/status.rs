@@ -41,6 +41,8 @@ statuses! {
     OutlineReversed = 1, "the outline runs clockwise and was turned round";
     Unresolved = 2, "the tolerance asked for in space is not met";
     StepTooLong = 3, "the step is too long for the motion: its error is a tenth of a body or more";
+    DriveUnresolved = 4, "the step is too long for what a drive does within it";
+    EnergyDrift = 5, "energy and the work of the drives do not balance";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";
@@ -72,6 +74,8 @@ statuses! {
     UnknownKind = -29, "a kind or flag has no such value";
     Aliasing = -30, "two buffers overlap that must not";
     NoConvergence = -31, "the equations of an implicit step were not solved: the step is too long";
+    Busy = -32, "another thread uses this simulation";
+    BadSave = -33, "these bytes are no state that was saved of this model by this version";
 }
 
 /// Where in the scene something is wrong. Indices count from 0; walls and bodies are counted apart.

@@ -21,6 +21,8 @@ pub struct Adams<R> {
     relative: R,
     absolute: R,
     max_step: R,
+    /// Length of the first step after a start; 0: chosen from the rates.
+    first: R,
     dim: usize,
     time: R,
     /// The part of the time that `time` cannot hold.
@@ -83,6 +85,7 @@ impl<R: Real> Adams<R> {
             relative,
             absolute,
             max_step,
+            first: R::zero(),
             dim: 0,
             time: R::zero(),
             time_rest: R::zero(),
@@ -97,6 +100,18 @@ impl<R: Real> Adams<R> {
             spans: [R::zero(); MAX_ORDER],
             counters: Counters::default(),
         })
+    }
+
+    /// The same with a length of the first step after every start (`None`: chosen from the rates).
+    ///
+    /// # Errors
+    /// `BadStep` unless it is positive and finite.
+    pub fn with_first_step(mut self, first: Option<R>) -> Result<Self> {
+        self.first = first.unwrap_or(R::zero());
+        if first.is_some_and(|h| !h.is_finite() || h < R::TINY) {
+            return Err(Error::new(Status::BadStep).of("first_step", self.first.to_f64()));
+        }
+        Ok(self)
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
@@ -312,6 +327,9 @@ impl<R: Real> Adams<R> {
     /// Length of the first step: the error of Euler's step, with the rate as the only scale known, a
     /// sixteenth of the tolerance; at most a tenth of the way.
     fn first_step(&self, remaining: R, b: &Buffers<'_, R>) -> R {
+        if self.first > R::zero() {
+            return self.first.min(self.max_step);
+        }
         let rate = b.rate.iter().zip(&*b.state).fold(R::zero(), |m, (f, y)| m.max(f.abs() / self.weight(*y)));
         let length = (remaining * R::lit(0.1)).min(self.max_step);
         let fastest = R::lit(4.0) * self.relative.sqrt() * rate;

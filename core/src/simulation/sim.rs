@@ -91,20 +91,23 @@ impl<'a, R: Real> Sim<'a, R> {
         if cfg!(not(feature = "implicit")) && matches!(method, Method::Gauss6 { .. }) {
             return Err(Error::new(Status::Unsupported).of("method", f64::NAN));
         }
-        let (relative, absolute) = match method {
+        let adams = match method {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 if !(step.is_finite() && step > R::zero()) {
                     return Err(Error::new(Status::BadStep).of("step", step.to_f64()));
                 }
-                (R::lit(1e-3), R::lit(1e-3))
+                Adams::new(R::lit(1e-3), R::lit(1e-3), None)?
             }
-            Method::Adams { relative, absolute } => (relative, absolute),
+            Method::Adams { relative, absolute, max_step, first_step } => {
+                let given = |x: R| (x != R::zero()).then_some(x);
+                Adams::new(relative, absolute, given(max_step))?.with_first_step(given(first_step))?
+            }
         };
         let mut progress = Progress {
             method,
             time: R::zero(),
             clock: Clock::Set,
-            adams: Adams::new(relative, absolute, None)?,
+            adams,
             rk4: Rk4::new(),
             abm4: Abm4::new(),
             gauss6: Gauss6::new(),

@@ -29,6 +29,10 @@ pub enum Method<R> {
         relative: R,
         /// Absolute tolerance.
         absolute: R,
+        /// Longest step, s; 0: none (no step is ever so long that a drive's motion within it would be missed).
+        max_step: R,
+        /// Length of the first step after a start, s; 0: chosen from the rates and the drives.
+        first_step: R,
     },
     /// Implicit Gauss–Legendre of order 6, fixed step, 20 to 40 evaluations per step: for long runs, since the energy
     /// of a motion that could also run backwards does not drift (docs/design.md, section Integrators). Needs the feature
@@ -37,6 +41,13 @@ pub enum Method<R> {
         /// Step, s.
         step: R,
     },
+}
+
+impl<R: Real> Method<R> {
+    /// [`Method::Adams`] with these tolerances, which chooses all its steps by itself.
+    pub fn adams(relative: R, absolute: R) -> Self {
+        Method::Adams { relative, absolute, max_step: R::zero(), first_step: R::zero() }
+    }
 }
 
 /// How far a simulation is.

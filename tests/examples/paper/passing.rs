@@ -53,7 +53,7 @@ fn run(scheme: Scheme, n: usize, tolerance: f64) -> nekton::Result<Run> {
         _ => (ForceFormula::Boundary, Quadrature::Plain),
     };
     let scene = Scene { force, quadrature, bodies: &bodies, ..Scene::new(1.0, 0.0) };
-    let mut sim = simulation(&scene, Method::Adams { relative: tolerance, absolute: tolerance });
+    let mut sim = simulation(&scene, Method::adams(tolerance, tolerance));
     let mut sim = sim.view();
     let clock = Instant::now();
     let mut states = Vec::new();
