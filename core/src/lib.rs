@@ -144,7 +144,7 @@ pub use setup::automatic_nodes::DEFAULT_TOLERANCE;
 pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};
-pub use simulation::diagnostics::Energy;
+pub use simulation::diagnostics::{Energy, EnergyDrift};
 pub use simulation::notices::STEP_ERROR_LIMIT;
 pub use simulation::sim::{STEP_LIMIT, Sim, SimHead, SimRequirement};
 pub use simulation::state::Method;

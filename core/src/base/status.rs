@@ -60,7 +60,7 @@ statuses! {
     Singular = -15, "a matrix is singular to working precision";
     NonFiniteState = -16, "the motion became infinite or undefined";
     StepTooSmall = -17, "the step is too small for the tolerance asked for or for the digits of the time";
-    TooManySteps = -18, "more steps were needed than allowed";
+    TooManySteps = -18, "more steps are needed than one call may make: lengthen the step, loosen the tolerance or raise the step limit";
     BadStep = -19, "the step must be positive and finite";
     BadTolerance = -20, "a tolerance must be positive and not below rounding";
     Length = -21, "a buffer has the wrong length";
@@ -76,6 +76,7 @@ statuses! {
     NoConvergence = -31, "the equations of an implicit step were not solved: the step is too long";
     Busy = -32, "another thread uses this simulation";
     BadSave = -33, "these bytes are no state that was saved of this model by this version";
+    PastTime = -34, "the time asked for lies before the present time";
 }
 
 /// Where in the scene something is wrong. Indices count from 0; walls and bodies are counted apart.
@@ -120,6 +121,8 @@ pub struct Error {
     pub what: &'static str,
     /// The offending value (NaN when there is none).
     pub value: f64,
+    /// What it had to keep to (NaN when that is no single number).
+    pub limit: f64,
 }
 
 /// Result of every fallible operation.
@@ -128,7 +131,7 @@ pub type Result<T, E = Error> = core::result::Result<T, E>;
 impl Error {
     /// An error without place or value.
     pub const fn new(status: Status) -> Self {
-        Error { status, place: Place::Scene, other: None, what: "", value: f64::NAN }
+        Error { status, place: Place::Scene, other: None, what: "", value: f64::NAN, limit: f64::NAN }
     }
     /// The same error at a place.
     pub const fn at(mut self, place: Place) -> Self {
@@ -146,6 +149,11 @@ impl Error {
         self.value = value;
         self
     }
+    /// The same error naming what the value had to keep to.
+    pub const fn beside(mut self, limit: f64) -> Self {
+        self.limit = limit;
+        self
+    }
 }
 
 impl From<Status> for Error {
@@ -161,7 +169,11 @@ impl fmt::Display for Error {
             write!(f, " (with {other})")?;
         }
         if !self.what.is_empty() {
-            write!(f, " ({} = {})", self.what, self.value)?;
+            write!(f, " ({} = {}", self.what, self.value)?;
+            if !self.limit.is_nan() {
+                write!(f, " beside {}", self.limit)?;
+            }
+            f.write_str(")")?;
         }
         Ok(())
     }

@@ -21,6 +21,7 @@ use crate::fluid::potentials::{
     add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
 };
 use crate::geometry::pose::{put_three, twist_of};
+use crate::model::signal::Moment;
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 use crate::scene::ForceFormula;
 
@@ -167,7 +168,7 @@ impl<R: Real> Evaluation<'_, R> {
             let torque = joint_torque(
                 model,
                 i,
-                t,
+                Moment { t, after: !self.kept.before },
                 self.coordinates.channels,
                 at(self.coordinates.s, i),
                 at(self.coordinates.ds, i),
@@ -309,12 +310,12 @@ impl<R: Real> Evaluation<'_, R> {
     /// Power of all drives: Σ ν ṡ over prescribed and torque-driven coordinates.
     pub(crate) fn power(&mut self, model: &Model<'_, R>, t: R) -> R {
         let prescribed = |c: &CoordinateRecord<R>| c.control == Control::Prescribed;
-        let mut power = R::zero();
+        let (mut power, at_time) = (R::zero(), Moment { t, after: !self.kept.before });
         for (i, (c, ds)) in model.coordinates.iter().zip(self.coordinates.ds.iter()).enumerate() {
             power += match c.control {
                 Control::Free => R::zero(),
                 Control::Torque => {
-                    joint_torque(model, i, t, self.coordinates.channels, at(self.coordinates.s, i), *ds) * *ds
+                    joint_torque(model, i, at_time, self.coordinates.channels, at(self.coordinates.s, i), *ds) * *ds
                 }
                 // What the prescribed coordinates bear where the free ones do not accelerate.
                 Control::Prescribed => at(self.forces.generalized, i) * *ds,
@@ -360,9 +361,16 @@ enum Inertia {
 }
 
 /// ν(t) − k (u − rest) − c u̇ of a torque-driven joint.
-pub(crate) fn joint_torque<R: Real>(model: &Model<'_, R>, coordinate: usize, t: R, channels: &[R], u: R, du: R) -> R {
+pub(crate) fn joint_torque<R: Real>(
+    model: &Model<'_, R>,
+    coordinate: usize,
+    at: Moment<R>,
+    channels: &[R],
+    u: R,
+    du: R,
+) -> R {
     let Some(c) = model.coordinates.get(coordinate) else { return R::NAN };
-    let [torque, _, _] = c.signal.evaluate(t, model.store, channels);
+    let [torque, _, _] = c.signal.evaluate(at, model.store, channels);
     torque - c.stiffness * (u - c.rest) - c.damping * du
 }
 

@@ -10,6 +10,7 @@ use crate::base::complex::{Complex, cis, complex, perp};
 use crate::base::memory::{at, part_mut, put};
 use crate::base::scalar::Real;
 use crate::geometry::pose::{Pose, Poses, put_pose, put_three, twist_of};
+use crate::model::signal::Moment;
 use crate::model::{Control, Hold, LinkRecord, Model};
 
 /// Placement of every link from the coordinates `s`: writes q (3 per link) and the poses behind the walls'.
@@ -151,10 +152,10 @@ pub(crate) fn jacobian_column<R: Real>(
     velocities(model, s, unit, poses, out);
 }
 
-/// Coordinates, rates and (for prescribed ones) accelerations at time `t`. `p`, `dp` hold the free ones.
+/// Coordinates, rates and (for prescribed ones) accelerations at a time. `p`, `dp` hold the free ones.
 pub(crate) fn set_coordinates<R: Real>(
     model: &Model<'_, R>,
-    t: R,
+    at_time: Moment<R>,
     p: &[R],
     dp: &[R],
     channels: &[R],
@@ -165,7 +166,7 @@ pub(crate) fn set_coordinates<R: Real>(
     let slots = s.iter_mut().zip(ds.iter_mut()).zip(dds.iter_mut());
     for (c, ((s, ds), dds)) in model.coordinates.iter().zip(slots) {
         if c.control == Control::Prescribed {
-            let [u, du, ddu] = c.signal.evaluate(t, model.store, channels);
+            let [u, du, ddu] = c.signal.evaluate(at_time, model.store, channels);
             (*s, *ds, *dds) = (if c.component < 3 { c.base + u } else { u }, du, ddu);
         } else {
             // Rates may be unknown.

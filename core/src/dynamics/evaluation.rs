@@ -216,6 +216,8 @@ pub(crate) struct Kept<R> {
     /// They hold the evaluation of the state shown, accelerations included. [`Evaluation::place`] and everything that writes
     /// over arrays unset it; [`crate::Sim`] sets it, after an evaluation of that state.
     pub shown: bool,
+    /// At a time at which drives jump, they are taken as they were before it: at the end of a step, not at its beginning.
+    pub before: bool,
     /// The walls' own rows and columns of the matrix hold their factors.
     pub walls_ready: bool,
     /// Where in its memory the matrix begins: a number, so that memory that is moved keeps its meaning.

@@ -10,14 +10,15 @@ use crate::dynamics::evaluation::Evaluation;
 use crate::fluid::contact::first_contact;
 use crate::fluid::near;
 use crate::geometry::pose::{Poses, put_pose};
+use crate::model::signal::Moment;
 use crate::model::{Control, Model};
 
 impl<R: Real> Evaluation<'_, R> {
     /// Places everything at (t, p), without any check: coordinates, q, poses.
     pub(crate) fn place_only(&mut self, model: &Model<'_, R>, t: R, p: &[R], dp: &[R]) {
         self.kept.shown = false;
-        let c = &mut self.coordinates;
-        set_coordinates(model, t, p, dp, c.channels, c.s, c.ds, c.dds);
+        let (c, at_time) = (&mut self.coordinates, Moment { t, after: !self.kept.before });
+        set_coordinates(model, at_time, p, dp, c.channels, c.s, c.ds, c.dds);
         place_links(model, c.s, self.placement.q, self.placement.poses);
     }
 

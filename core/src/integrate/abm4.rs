@@ -14,6 +14,8 @@ use crate::base::status::{Result, Status};
 #[derive(Clone, Copy, Debug)]
 pub struct Abm4<R> {
     past: FixedStep<R>,
+    /// Has a step been made since the start or a jump?
+    made: bool,
 }
 
 buffers! {
@@ -39,7 +41,7 @@ impl<R: Real> Default for Abm4<R> {
 impl<R: Real> Abm4<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Abm4 { past: FixedStep::new() }
+        Abm4 { past: FixedStep::new(), made: false }
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
@@ -56,12 +58,25 @@ impl<R: Real> Abm4<R> {
     /// side jumped. The next three steps are Runge–Kutta again.
     pub fn reset(&mut self) {
         self.past.reset();
+        self.made = false;
+    }
+
+    /// Forgets the past rates, as [`reset`](Self::reset) does, but keeps the rest of the state: to be called when the right-hand side
+    /// jumped and the state did not.
+    pub fn jump(&mut self) {
+        self.past.jump();
+        self.made = false;
     }
 
     /// Estimated local error of the last step, unknown by unknown, by Milne's device: 19/270 of the difference
     /// of corrector and predictor. `None` after a Runge–Kutta step.
     pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
         self.past.estimated.then(|| part(memory, 0, dim))
+    }
+
+    /// Upper estimate of the last step's error if it was a Runge–Kutta step, as [`super::Rk4::rough_error`].
+    pub fn rough_error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        (self.made && !self.past.estimated).then(|| part(memory, 0, dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative. A step that differs from the last one
@@ -87,6 +102,10 @@ impl<R: Real> Abm4<R> {
             copy(b.trial_rate, b.rate);
             copy(b.sum, b.rate);
             later_stages(system, &mut self.past.counters, t, h, y, b.trial, b.trial_rate, b.sum)?;
+            let quarter = h * R::lit(0.25);
+            for (e, ((k1, k4), sum)) in b.error.iter_mut().zip(b.rate.iter().zip(&*b.trial_rate).zip(&*b.sum)) {
+                *e = quarter * (*k1 + *k4) - R::HALF * *sum;
+            }
         } else {
             let h24 = h / R::lit(24.0);
             let past = || b.rate.iter().zip(&*b.past1).zip(&*b.past2).zip(&*b.past3);
@@ -110,6 +129,7 @@ impl<R: Real> Abm4<R> {
         copy(b.past2, b.past1);
         copy(b.past1, b.rate);
         self.past.end(h, known, 3, known == 3);
+        self.made = true;
         Ok(())
     }
 }

@@ -29,6 +29,8 @@ pub struct Adams<R> {
     time_rest: R,
     /// Is the rate at the state known?
     prepared: bool,
+    /// Has it jumped since it was evaluated?
+    jumped: bool,
     /// Length proposed for the next step; 0 if it is to be estimated.
     proposed: R,
     /// Order of the next step.
@@ -90,6 +92,7 @@ impl<R: Real> Adams<R> {
             time: R::zero(),
             time_rest: R::zero(),
             prepared: false,
+            jumped: false,
             proposed: R::zero(),
             order: 1,
             starting: true,
@@ -137,8 +140,15 @@ impl<R: Real> Adams<R> {
 
     /// Starts anew at the present state: to be called when the right-hand side has jumped.
     pub fn restart(&mut self) {
-        self.prepared = false;
+        (self.prepared, self.jumped) = (false, false);
         self.forget();
+    }
+
+    /// The right-hand side has jumped at the present time, by much the same at all states near by, as when another force begins to act:
+    /// the next step evaluates it once more, and takes the differences of the past as they were. If they mislead, the error
+    /// estimate sees it, and order and step follow.
+    pub fn jump(&mut self) {
+        self.jumped = self.prepared;
     }
 
     /// Back to order 1 and a step to be estimated.
@@ -155,16 +165,18 @@ impl<R: Real> Adams<R> {
     pub fn prepare<S: System<R> + ?Sized>(&mut self, system: &mut S, memory: &mut [R]) -> Result<()> {
         same_length(self.dim, system.dim())?;
         let b = Buffers::take(&self.dim, &mut { memory })?;
-        if self.prepared {
+        if self.prepared && !self.jumped {
             return Ok(());
         }
         evaluate(system, &mut self.counters, self.time, b.state, b.trial_rate)?;
         copy(b.rate, b.trial_rate);
         for (column, rate) in columns_mut(b.history).zip(&*b.rate) {
-            *column = [R::zero(); COLUMNS];
+            if !self.prepared {
+                *column = [R::zero(); COLUMNS];
+            }
             column[0] = *rate;
         }
-        self.prepared = true;
+        (self.prepared, self.jumped) = (true, false);
         Ok(())
     }
 
@@ -275,6 +287,7 @@ impl<R: Real> Adams<R> {
         if self.last_step * remaining < R::zero() {
             self.forget();
         }
+        let sign = if remaining < R::zero() { -R::one() } else { R::one() };
         if self.proposed == R::zero() {
             self.proposed = self.first_step(remaining.abs(), b);
         }
@@ -287,15 +300,26 @@ impl<R: Real> Adams<R> {
         let mut length = self.proposed.max(shortest);
         let mut failures = 0;
         loop {
-            let (step, last) = self.fit(length, remaining);
-            let time = if last { t_stop } else { self.time + (self.time_rest + step) };
+            // A step ends where the rates jump.
+            let reach = if R::TWO * length < remaining.abs() { self.time + R::TWO * length * sign } else { t_stop };
+            let jump = system.next_jump(self.time, reach);
+            let (stop, room) = jump.map_or((t_stop, remaining), |t| (t, (t - self.time) - self.time_rest));
+            let (mut step, mut last) = self.fit(length, room);
+            let seen = system.seen(self.time, step);
+            if seen.abs() < step.abs() {
+                // Unless rounding is all that is missing.
+                (step, last) = if seen.abs() < shortest { (shortest * sign, false) } else { (seen, false) };
+            }
+            let time = if last { stop } else { self.time + (self.time_rest + step) };
             let formula = Formula::new(self.order, step, &self.spans);
             let trial = self.attempt(system, &formula, time, b);
             let (error, shorter) = match trial {
                 Ok(estimate) if estimate.step <= R::one() => {
                     match evaluate(system, &mut self.counters, time, b.trial, b.trial_rate) {
                         Ok(()) => {
-                            self.accept(&formula, &estimate, time, last, b);
+                            let wanted = (failures == 0 && step.abs() < length).then_some(length);
+                            self.accept(&formula, &estimate, time, last, wanted, b);
+                            self.jumped = system.jumps_at(self.time);
                             return Ok(());
                         }
                         Err(e) => (Some(e), R::lit(0.25)),
@@ -324,14 +348,16 @@ impl<R: Real> Adams<R> {
         }
     }
 
-    /// Length of the first step: the error of Euler's step, with the rate as the only scale known, a
+    /// Length of the first step: the one given, or that of Euler's step whose error, with the rate as the only scale known, is a
     /// sixteenth of the tolerance; at most a tenth of the way.
     fn first_step(&self, remaining: R, b: &Buffers<'_, R>) -> R {
         if self.first > R::zero() {
             return self.first.min(self.max_step);
         }
         let rate = b.rate.iter().zip(&*b.state).fold(R::zero(), |m, (f, y)| m.max(f.abs() / self.weight(*y)));
-        let length = (remaining * R::lit(0.1)).min(self.max_step);
+        // Without an end in sight a system at rest is looked at again after a second.
+        let way = if remaining < R::MAX * R::HALF { remaining * R::lit(0.1) } else { R::one() };
+        let length = way.min(self.max_step);
         let fastest = R::lit(4.0) * self.relative.sqrt() * rate;
         if length * fastest > R::one() { R::one() / fastest } else { length }
     }
@@ -394,7 +420,16 @@ impl<R: Real> Adams<R> {
     }
 
     /// Moves to the trial state, whose rate is in `trial_rate`, and chooses order and step of the next.
-    fn accept(&mut self, formula: &Formula<R>, estimate: &Estimate<R>, time: R, last: bool, b: &mut Buffers<'_, R>) {
+    /// `wanted`: a longer step that would have been tried if nothing had stopped it.
+    fn accept(
+        &mut self,
+        formula: &Formula<R>,
+        estimate: &Estimate<R>,
+        time: R,
+        last: bool,
+        wanted: Option<R>,
+        b: &mut Buffers<'_, R>,
+    ) {
         let k = formula.order;
         // Equal steps count only as far as the differences of their order existed.
         let equal = if formula.step == self.last_step { self.equal_steps } else { 0 };
@@ -426,6 +461,10 @@ impl<R: Real> Adams<R> {
             step_factor(order, error)
         };
         self.proposed = factor * formula.step.abs();
+        if let Some(wanted) = wanted {
+            // It was not for its error that the step was short.
+            self.proposed = self.proposed.max(wanted.min(R::lit(16.0) * formula.step.abs()));
+        }
     }
 }
 

@@ -30,6 +30,11 @@ impl<R: Real> FixedStep<R> {
         (self.known, self.continues, self.estimated) = (0, false, false);
     }
 
+    /// Forgets the past rates.
+    pub(super) fn jump(&mut self) {
+        (self.known, self.estimated) = (0, false);
+    }
+
     /// Begins a step: clears `rest`, the part of the state that it cannot hold, after a start; returns how many earlier rates
     /// serve a step of this length.
     pub(super) fn begin(&self, h: R, rest: &mut [R]) -> usize {

@@ -92,6 +92,12 @@ impl<R: Real> Gauss6<R> {
         self.past.reset();
     }
 
+    /// Forgets the past rates, as [`reset`](Self::reset) does, but keeps the rest of the state: to be called when the right-hand side
+    /// jumped and the state did not.
+    pub fn jump(&mut self) {
+        self.past.jump();
+    }
+
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
     ///
     /// # Errors

@@ -12,10 +12,13 @@ use crate::base::status::{Result, Status};
 ///
 /// The error of a step is estimated when the next one begins and the rate at its end is known: by the
 /// difference from the Adams–Moulton formula of order 7, through the rates of seven equal steps. It costs no
-/// evaluation, and is exact as the step tends to 0.
+/// evaluation, and is exact as the step tends to 0. For steps that are not followed by as many equal ones there is
+/// [`Rk4::rough_error`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rk4<R> {
     past: FixedStep<R>,
+    /// Has a step been made since the start or a jump?
+    made: bool,
 }
 
 /// Earlier rates that the error estimate needs.
@@ -29,6 +32,8 @@ buffers! {
         error: R = *dim,
         /// The part of the state that it cannot hold.
         rest: R = *dim,
+        /// Rough error of the last step.
+        rough: R = *dim,
         /// What the last step added to the state.
         increment: R = *dim,
         /// Rates at the beginning of the last steps, the newest first.
@@ -46,7 +51,7 @@ impl<R: Real> Default for Rk4<R> {
 impl<R: Real> Rk4<R> {
     /// A new integrator.
     pub fn new() -> Self {
-        Rk4 { past: FixedStep::new() }
+        Rk4 { past: FixedStep::new(), made: false }
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
@@ -63,12 +68,26 @@ impl<R: Real> Rk4<R> {
     /// or the right-hand side jumped.
     pub fn reset(&mut self) {
         self.past.reset();
+        self.made = false;
+    }
+
+    /// Forgets the past rates, as [`reset`](Self::reset) does, but keeps the rest of the state: to be called when the right-hand side
+    /// jumped and the state did not.
+    pub fn jump(&mut self) {
+        self.past.jump();
+        self.made = false;
     }
 
     /// Estimated local error of the step before the last, unknown by unknown. `None` until there were six
     /// equal steps before it.
     pub fn error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
         self.past.estimated.then(|| part(memory, 0, dim))
+    }
+
+    /// Upper estimate of the last step's error, unknown by unknown: the difference from an embedded formula of order 2, which is O(h³).
+    /// `None` before the first step and after a jump.
+    pub fn rough_error<'m>(&self, dim: usize, memory: &'m [R]) -> Option<&'m [R]> {
+        self.made.then(|| part(memory, dim.saturating_mul(2), dim))
     }
 
     /// Advances `y` from `t` to `t + h`; `h` may be negative.
@@ -103,7 +122,14 @@ impl<R: Real> Rk4<R> {
         copy(b.sum, b.first);
         copy(b.rate, b.first);
         later_stages(system, &mut self.past.counters, t, h, y, b.stage, b.rate, b.sum)?;
+        let quarter = h * R::lit(0.25);
+        let rough =
+            b.first.iter().zip(&*b.rate).zip(&*b.sum).map(|((k1, k4), sum)| quarter * (*k1 + *k4) - R::HALF * *sum);
         add_increment(y, b.rest, b.sum)?;
+        for (e, x) in b.rough.iter_mut().zip(rough) {
+            *e = x;
+        }
+        self.made = true;
         copy(b.increment, b.sum);
         // One step on: every rate takes the place of the next older one.
         for block in b.past.chunks_exact_mut(dim.max(1)) {

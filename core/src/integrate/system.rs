@@ -27,6 +27,23 @@ pub trait System<R> {
     fn clocked(&self) -> bool {
         false
     }
+
+    /// The longest step from `t`, at most `h` and of its sign, whose ends and stages tell what the rates do as functions of time:
+    /// nothing that begins and ends within it is missed.
+    fn seen(&self, _t: R, h: R) -> R {
+        h
+    }
+
+    /// The first time strictly between `t` and `end` at which the rates jump as functions of time. A step ends there, with the rates
+    /// before the jump; the next one begins with those after it.
+    fn next_jump(&self, _t: R, _end: R) -> Option<R> {
+        None
+    }
+
+    /// Whether the rates jump at `t`.
+    fn jumps_at(&self, _t: R) -> bool {
+        false
+    }
 }
 
 /// What an integrator has done since it was made.

@@ -4,8 +4,10 @@
 //! Order of boundaries (and of unknowns): tank, obstacles, then the links of all bodies.
 
 pub(crate) mod boundary;
+pub(crate) mod drives;
 pub(crate) mod plan;
 pub(crate) mod signal;
+pub(crate) mod table;
 
 use crate::base::complex::Complex;
 use crate::base::features;

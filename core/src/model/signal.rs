@@ -5,7 +5,36 @@
 use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
+use crate::model::table::Rows;
 use crate::scene::{Signal, Window};
+
+/// A time, and which side of it is meant where something jumps there.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Moment<R> {
+    pub t: R,
+    pub after: bool,
+}
+
+/// What changes suddenly at a time, the worst last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub(crate) enum Jump {
+    None,
+    /// ü of a motion, or a torque: the equations' right-hand side jumps, the state does not.
+    Force,
+    /// The rate of a motion: only an impulse would do that.
+    Rate,
+    /// The value of a motion: nothing would do that.
+    Value,
+}
+
+/// How well a step must know what a drive does between its ends.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) enum Seen {
+    /// So that an error estimate sees it: a quarter of a period, an eighth of a ramp.
+    Roughly,
+    /// For a method without an estimate: a sixteenth of a period.
+    Well,
+}
 
 /// A signal compiled into a model: numbers live in the model's store.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +83,9 @@ impl<R: Real> Signal<'_, R> {
         }
     }
 
-    /// Checks the numbers and copies them to the front of `store`, which begins at `at` in the model's store.
-    pub(crate) fn compile(&self, store: &mut [R], at: usize, channel: usize) -> Result<SignalRecord<R>> {
+    /// Checks the numbers and copies them to the front of `store`, which begins at `at` in the model's store. A motion may not jump, a
+    /// torque may.
+    pub(crate) fn compile(&self, store: &mut [R], at: usize, channel: usize, motion: bool) -> Result<SignalRecord<R>> {
         let finite =
             |what, x: R| if x.is_finite() { Ok(()) } else { Err(Error::new(Status::NotFinite).of(what, x.to_f64())) };
         let kind = match self {
@@ -91,7 +121,8 @@ impl<R: Real> Signal<'_, R> {
                         finite("table", *x)?;
                         *s = *x;
                     }
-                    if last.is_some_and(|t| row[0] <= t) {
+                    let jump = last == Some(row[0]) && !motion;
+                    if last.is_some_and(|t| row[0] <= t) && !jump {
                         return Err(Error::new(Status::BadTable).of("t", row[0].to_f64()));
                     }
                     last = Some(row[0]);
@@ -111,7 +142,8 @@ impl<R: Real> Signal<'_, R> {
 
 impl<R: Real> SignalRecord<R> {
     /// Value, rate and acceleration at time `t`. O(terms), or O(log rows) for a table.
-    pub(crate) fn evaluate(&self, t: R, store: &[R], channels: &[R]) -> [R; 3] {
+    pub(crate) fn evaluate(&self, at: Moment<R>, store: &[R], channels: &[R]) -> [R; 3] {
+        let t = at.t;
         match self.kind {
             Kind::Constant(c) => [c, R::zero(), R::zero()],
             Kind::Harmonic(window) => {
@@ -129,8 +161,69 @@ impl<R: Real> SignalRecord<R> {
                     None => u,
                 }
             }
-            Kind::Table => table(part(store, self.at, self.len), t),
-            Kind::Channel => table(part(channels, self.at, self.len), t),
+            Kind::Table | Kind::Channel => self.rows(store, channels).evaluate(at),
+        }
+    }
+
+    fn rows<'s>(&self, store: &'s [R], channels: &'s [R]) -> Rows<'s, R> {
+        let all = if matches!(self.kind, Kind::Channel) { channels } else { store };
+        Rows(part(all, self.at, self.len))
+    }
+
+    /// The longest step from `t`, at most `h`, whose ends tell what the signal does in between, as the drive of a motion (by ü) or as a
+    /// torque: a quarter of the shortest period; an eighth of a window's ramp, or as far as its beginning; of a table, as far as ü (or
+    /// the torque) stays within half of its size at the ends from the straight line between these. O(terms), or O(rows in the step).
+    pub(crate) fn seen(&self, motion: bool, share: Seen, t: R, h: R, store: &[R], channels: &[R]) -> R {
+        match self.kind {
+            Kind::Constant(_) => h,
+            Kind::Table | Kind::Channel => self.rows(store, channels).seen(motion, share, t, h),
+            Kind::Harmonic(window) => {
+                let turns = R::lit(match share {
+                    Seen::Roughly => 0.25,
+                    Seen::Well => 0.0625,
+                });
+                let period = self.shortest_period(motion, store) * turns;
+                let Some(w) = window else { return h.min(period) };
+                let ramp = (w.ramp * turns * R::HALF).min(period);
+                let mut limit = h;
+                for (start, end, scale) in [
+                    (w.from, w.from + w.ramp, ramp),
+                    (w.from + w.ramp, w.to - w.ramp, period),
+                    (w.to - w.ramp, w.to, ramp),
+                ] {
+                    if end > t && start - t < limit {
+                        limit = limit.min(scale.max(start - t));
+                    }
+                }
+                limit
+            }
+        }
+    }
+
+    /// Of a harmonic sum: of the fastest term that is more than rounding.
+    fn shortest_period(&self, motion: bool, store: &[R]) -> R {
+        let terms = || part(store, self.at, self.len).as_chunks::<4>().0.iter();
+        let size = |amplitude: R, frequency: R| amplitude.abs() * if motion { frequency * frequency } else { R::one() };
+        let all = terms().fold(R::zero(), |s, [a, f, ..]| s + size(*a, *f));
+        let fastest = terms()
+            .filter(|[a, f, ..]| size(*a, *f) > R::EPSILON * all)
+            .fold(R::zero(), |m, [_, f, ..]| m.max(f.abs()));
+        if fastest > R::TAU / R::MAX { R::TAU / fastest } else { R::MAX }
+    }
+
+    /// What jumps at a time.
+    pub(crate) fn jump_at(&self, motion: bool, t: R, store: &[R], channels: &[R]) -> Jump {
+        match self.kind {
+            Kind::Constant(_) | Kind::Harmonic(_) => Jump::None,
+            Kind::Table | Kind::Channel => self.rows(store, channels).jump_at(motion, t),
+        }
+    }
+
+    /// First time strictly within (t, end) at which something jumps.
+    pub(crate) fn next_jump(&self, motion: bool, t: R, end: R, store: &[R], channels: &[R]) -> Option<R> {
+        match self.kind {
+            Kind::Constant(_) | Kind::Harmonic(_) => None,
+            Kind::Table | Kind::Channel => self.rows(store, channels).next_jump(motion, t, end),
         }
     }
 
@@ -173,60 +266,22 @@ fn smooth_step<R: Real>(x: R, length: R) -> [R; 3] {
     [s, -z1 * q / length, (z1 * z1 * (one - s - s) - z2) * q / (length * length)]
 }
 
-/// Quintic Hermite interpolation of rows (t, u, u̇, ü); constant outside.
-fn table<R: Real>(rows: &[R], t: R) -> [R; 3] {
-    let row = |k: usize| match part(rows, 4 * k, 4) {
-        &[t, u, v, a] => [t, u, v, a],
-        _ => [R::NAN; 4],
-    };
-    let n = rows.len() / 4;
-    if n == 0 {
-        return [R::NAN; 3];
-    }
-    let (first, last) = (row(0), row(n - 1));
-    // A step that ends with the table may miss its last time by rounding; it must not find the signal at rest there.
-    let slack = R::lit(16.0) * R::EPSILON * first[0].abs().max(last[0].abs());
-    for (end, beyond) in [(first, t <= first[0]), (last, t >= last[0])] {
-        if beyond {
-            let near = (t - end[0]).abs() <= slack;
-            return if near { [end[1], end[2], end[3]] } else { [end[1], R::zero(), R::zero()] };
-        }
-    }
-    let (mut low, mut high) = (0, n - 1);
-    while high - low > 1 {
-        let middle = (low + high) / 2;
-        if row(middle)[0] <= t { low = middle } else { high = middle }
-    }
-    let ([t0, u0, v0, a0], [t1, u1, v1, a1]) = (row(low), row(high));
-    let h = t1 - t0;
-    let x = (t - t0) / h;
-    // u = u0 + v0 s + a0 s²/2 + c3 x³ + c4 x⁴ + c5 x⁵ with s = h x
-    let (v0h, a0h) = (v0 * h, a0 * h * h);
-    let d = u1 - u0 - v0h - a0h * R::HALF;
-    let e = v1 * h - v0h - a0h;
-    let f = a1 * h * h - a0h;
-    let c = |k: f64| R::lit(k);
-    let c3 = c(10.0) * d - c(4.0) * e + c(0.5) * f;
-    let c4 = c(-15.0) * d + c(7.0) * e - f;
-    let c5 = c(6.0) * d - c(3.0) * e + c(0.5) * f;
-    let u = u0 + x * (v0h + x * (a0h * R::HALF + x * (c3 + x * (c4 + x * c5))));
-    let v = (v0h + x * (a0h + x * (c(3.0) * c3 + x * (c(4.0) * c4 + x * c(5.0) * c5)))) / h;
-    let a = (a0h + x * (c(6.0) * c3 + x * (c(12.0) * c4 + x * c(20.0) * c5))) / (h * h);
-    [u, v, a]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::Harmonic;
 
+    fn at(t: f64) -> Moment<f64> {
+        Moment { t, after: false }
+    }
+
     fn derivatives_agree(signal: Signal<'_, f64>, times: &[f64], tolerance: f64) {
         let mut store = [0.0; 64];
-        let record = signal.compile(&mut store, 0, 0).unwrap();
+        let record = signal.compile(&mut store, 0, 0, true).unwrap();
         let h = 1e-4;
         for &t in times {
-            let [_, v, a] = record.evaluate(t, &store, &[]);
-            let (p, m) = (record.evaluate(t + h, &store, &[]), record.evaluate(t - h, &store, &[]));
+            let [_, v, a] = record.evaluate(at(t), &store, &[]);
+            let (p, m) = (record.evaluate(at(t + h), &store, &[]), record.evaluate(at(t - h), &store, &[]));
             assert!(((p[0] - m[0]) / (2.0 * h) - v).abs() < tolerance, "rate at {t}");
             assert!(((p[1] - m[1]) / (2.0 * h) - a).abs() < tolerance, "acceleration at {t}");
         }
@@ -250,10 +305,11 @@ mod tests {
     fn a_table_passes_through_its_rows() {
         let rows = [[0.0, 1.0, 0.5, -0.2], [1.0, 2.0, 0.0, 0.4], [3.0, -1.0, 0.2, 0.0]];
         let mut store = [0.0; 12];
-        let record = Signal::Table(&rows).compile(&mut store, 0, 0).unwrap();
+        let record = Signal::Table(&rows).compile(&mut store, 0, 0, true).unwrap();
         for row in rows {
-            let [u, v, a] = record.evaluate(row[0], &store, &[]);
-            assert!((u - row[1]).abs() + (v - row[2]).abs() + (a - row[3]).abs() < 1e-14);
+            // At rest outside: the first row is seen from after it.
+            let [u, v, a] = record.evaluate(Moment { t: row[0], after: row[0] < 3.0 }, &store, &[]);
+            assert!((u - row[1]).abs() + (v - row[2]).abs() + (a - row[3]).abs() < 1e-13);
         }
     }
 
@@ -263,5 +319,18 @@ mod tests {
         assert_eq!(w.evaluate(1.0), [0.0; 3]);
         assert_eq!(w.evaluate(3.5), [0.0; 3]);
         assert_eq!(w.evaluate(2.0)[0], 1.0);
+    }
+
+    #[test]
+    fn a_window_is_met_at_its_beginning_and_resolved() {
+        let terms = [Harmonic { amplitude: 0.7, frequency: 2.0, phase: 0.3, offset: 0.1 }];
+        let window = Some(Window { from: 1000.0, to: 1000.5, ramp: 1e-3 });
+        let mut store = [0.0; 4];
+        let record = Signal::Harmonic { terms: &terms, window }.compile(&mut store, 0, 0, true).unwrap();
+        let seen = |t| record.seen(true, Seen::Roughly, t, 5000.0, &store, &[]);
+        assert_eq!(seen(0.0), 1000.0);
+        assert_eq!(seen(1000.0), 1.25e-4);
+        assert!((seen(1000.1) - 0.399).abs() < 1e-9);
+        assert_eq!(seen(1000.5), 5000.0);
     }
 }

@@ -235,7 +235,10 @@ pub(crate) fn build_coordinates<R: Real, S: Description<R>>(
     let mut push = |mut record: CoordinateRecord<R>, signal: Option<Signal<'_, R>>| -> Result<()> {
         if let Some(signal) = signal {
             record.constant = signal.is_constant();
-            record.signal = signal.compile(part_mut(store, at, signal.store_len()), at, channels)?;
+            record.signal = {
+                let motion = record.control == Control::Prescribed;
+                signal.compile(part_mut(store, at, signal.store_len()), at, channels, motion)?
+            };
             channels += usize::from(record.signal.channel().is_some());
             at += signal.store_len();
         } else {

@@ -11,6 +11,7 @@ use crate::dynamics::evaluation::Evaluation;
 use crate::dynamics::forces::{buoyancy, circulation, repulsion};
 use crate::fluid::contact::{Gap, smallest_gap};
 use crate::geometry::pose::{Poses, put_three, twist_of};
+use crate::model::signal::Moment;
 use crate::model::{Control, Formulation};
 use crate::simulation::sim::Sim;
 
@@ -31,6 +32,18 @@ pub struct Energy<R> {
     pub total: R,
     /// Work done by the drives since the start; total − work is constant.
     pub work: R,
+}
+
+/// Balance of energy, J/m.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct EnergyDrift<R> {
+    /// Total − work, now minus at first.
+    pub amount: R,
+    /// The largest kinetic energy met when energies were asked for.
+    pub kinetic: R,
+    /// From where on it is noticed: a thousandth of `kinetic`, with what a hundred times the absolute tolerance of `Adams` makes of it,
+    /// or rounding of the energies.
+    pub allowed: R,
 }
 
 impl<R: Real> Sim<'_, R> {
@@ -83,7 +96,21 @@ impl<R: Real> Sim<'_, R> {
         };
         let work = if head.tracks_work { self.state.y.last().copied().unwrap_or(zero) } else { zero };
         let total = kinetic_fluid + kinetic_bodies + weight + repulsion + circulation;
+        let sizes = [kinetic_fluid, kinetic_bodies, weight, repulsion, circulation, work];
+        self.progress.balance.add(total - work, &sizes, self.state.velocities, self.progress.time);
         Ok(Energy { kinetic_fluid, kinetic_bodies, buoyancy: weight, repulsion, circulation, total, work })
+    }
+
+    /// By how much energy − work differs from what it was when an energy was first asked for since [`Sim::set_state`]: the error of the
+    /// whole motion, of whatever origin, that no estimate of single steps can miss. Ask at the start, too. One evaluation if nothing was
+    /// asked at this state, as [`Sim::energy`].
+    ///
+    /// # Errors
+    /// As [`Sim::energy`].
+    pub fn energy_drift(&mut self) -> Result<EnergyDrift<R>> {
+        self.energy()?;
+        let b = self.progress.balance;
+        Ok(EnergyDrift { amount: b.drift, kinetic: b.kinetic, allowed: self.progress.allowed_drift() })
     }
 
     fn circulates(&self) -> bool {
@@ -133,13 +160,12 @@ impl<R: Real> Sim<'_, R> {
         self.refresh()?;
         let model = self.model;
         self.evaluation.drive_forces(&model);
+        let now = Moment { t: self.progress.time, after: true };
         let joints = model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3);
         for ((torque, power), (k, c)) in torque.iter_mut().zip(power.iter_mut()).zip(joints) {
             let (u, du) = (at(self.evaluation.coordinates.s, k), at(self.evaluation.coordinates.ds, k));
             *torque = match c.control {
-                Control::Torque => {
-                    joint_torque(&model, k, self.progress.time, self.evaluation.coordinates.channels, u, du)
-                }
+                Control::Torque => joint_torque(&model, k, now, self.evaluation.coordinates.channels, u, du),
                 _ => at(self.evaluation.forces.generalized, k),
             };
             *power = *torque * du;

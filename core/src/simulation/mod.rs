@@ -1,6 +1,7 @@
 //! A model in motion: state, stepping, diagnostics.
 
 pub(crate) mod diagnostics;
+mod drives;
 pub(crate) mod notices;
 pub(crate) mod right_hand_side;
 pub(crate) mod sim;

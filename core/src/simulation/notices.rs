@@ -6,7 +6,8 @@ use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::indicators::Resolution;
 use crate::simulation::sim::Sim;
-use crate::simulation::state::Watch;
+use crate::simulation::state::{Method, Watch};
+use crate::simulation::time_error::{Rough, StepError};
 
 /// Estimated error of one step (of positions, and of velocities over another step), in reaches of a link or in radians, from which
 /// on steps are too long.
@@ -29,16 +30,41 @@ impl<R: Real> Sim<'_, R> {
     }
 
     /// What is to be noticed of the last call of [`Sim::step`] or [`Sim::advance`], and when it was worst; `None` if there is
-    /// nothing.
+    /// nothing. The first of [`Sim::notices`].
+    pub fn notice(&mut self) -> Option<(R, Error)> {
+        self.notices().into_iter().flatten().next()
+    }
+
+    /// All that is to be noticed, each with its time, the gravest first:
     /// * `StepTooLong`: the estimated error of a step was [`STEP_ERROR_LIMIT`](crate::STEP_ERROR_LIMIT) or more reaches of a link, or radians; the motion is no longer
     ///   that of the scene. (`gauss6` has no estimate: its stages are not found then.)
+    /// * `DriveUnresolved`: a drive did something within a step that its ends do not tell (a step of `rk4` or `abm4` longer than a quarter
+    ///   of a period, an eighth of a window's ramp, or with rows of a table in it that leave the straight line; a jump within a step), or
+    ///   a motion jumped in its position or speed. The longest step that would have seen it (0: none) and the joint or body.
     /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
     ///   error and the boundaries that are now closest to each other. Never if none was asked for. O(N²) for that gap.
-    pub fn notice(&mut self) -> Option<(R, Error)> {
-        if self.progress.watch != Watch::Nothing && self.progress.coarsest >= R::lit(STEP_ERROR_LIMIT) {
+    /// * `EnergyDrift`: as [`Sim::energy_drift`] found it when an energy was asked for last.
+    pub fn notices(&mut self) -> [Option<(R, Error)>; 4] {
+        let moved = self.progress.watch != Watch::Nothing;
+        let coarse = (moved && self.progress.coarsest >= R::lit(STEP_ERROR_LIMIT)).then(|| {
             let notice = Error::new(Status::StepTooLong).of("error", self.progress.coarsest.to_f64());
-            return Some((self.progress.coarsest_time, notice));
-        }
+            (self.progress.coarsest_time, notice)
+        });
+        let missed = self.progress.missed;
+        let unseen = (moved && missed.length < R::MAX).then(|| {
+            let notice = Error::new(Status::DriveUnresolved).of("step", missed.length.to_f64());
+            (missed.time, notice.at(self.model.place_of(missed.coordinate)))
+        });
+        let balance = self.progress.balance;
+        let drift = (balance.drift.abs() > self.progress.allowed_drift()).then(|| {
+            let notice = Error::new(Status::EnergyDrift).of("drift", balance.drift.to_f64());
+            (balance.time, notice.beside(balance.kinetic.to_f64()))
+        });
+        [coarse, unseen, self.unresolved(), drift]
+    }
+
+    /// The tolerance in space, if it was not met.
+    fn unresolved(&mut self) -> Option<(R, Error)> {
         let asked = self.model.head.tolerance;
         if asked == R::zero() {
             return None;
@@ -67,5 +93,54 @@ impl<R: Real> Sim<'_, R> {
         let force = self.evaluation.force_error(&model);
         let mass = self.evaluation.mass_error(&model);
         Ok(Resolution { mass, force, quadrature, repulsion })
+    }
+
+    /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
+    pub(crate) fn note_error(&mut self, regular: bool, t: R, h: R) {
+        let (n, memory) = (self.state.y.len(), &*self.state.integrator);
+        let p = &mut *self.progress;
+        // A shortened step is Runge–Kutta, unless it is of `Gauss6`.
+        let (good, rough) = match p.method {
+            Method::Rk4 { .. } => (p.rk4.error(n, memory), p.rk4.rough_error(n, memory)),
+            Method::Abm4 { .. } if regular => (p.abm4.error(n, memory), p.abm4.rough_error(n, memory)),
+            Method::Abm4 { .. } => (None, p.rk4.rough_error(n, memory)),
+            Method::Adams { .. } => (p.adams.error(memory), None),
+            Method::Gauss6 { .. } => (None, None),
+        };
+        let of = |error| StepError::of(error, h, &self.model);
+        let (good, rough) = (good.map(of), rough.map(of));
+        match good {
+            Some(error) => {
+                p.time_error.add(&error);
+                p.rough.better = true;
+                self.note_step(error.relative, t);
+            }
+            None => p.time_error.unknown += 1,
+        }
+        if let Some(error) = rough.filter(|_| !self.progress.rough.better) {
+            self.progress.rough.add(error);
+        }
+    }
+
+    /// The integrator is about to forget the past: steps of which nothing better will be known are told by their upper estimates.
+    pub(crate) fn end_stretch(&mut self) {
+        let rough = self.progress.rough;
+        self.progress.rough = Rough::nothing();
+        if rough.better || rough.steps == 0 {
+            return;
+        }
+        self.progress.time_error.add_rough(&rough);
+        if self.progress.watch == Watch::Past {
+            // Its call is over: the next one tells.
+            self.progress.late = self.progress.late.max(rough.sum.relative);
+        } else {
+            self.note_step(rough.sum.relative, self.progress.time);
+        }
+    }
+
+    fn note_step(&mut self, relative: R, t: R) {
+        if relative > self.progress.coarsest {
+            (self.progress.coarsest, self.progress.coarsest_time) = (relative, t);
+        }
     }
 }

@@ -9,6 +9,7 @@ use crate::dynamics::evaluation::{Counters, Evaluation};
 use crate::fluid::contact::{first_misplaced, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::integrate::System;
+use crate::model::signal::{Jump, Seen};
 use crate::model::{Control, CoordinateRecord, Formulation, Model};
 
 /// The equations of motion as an integrator sees them.
@@ -20,6 +21,8 @@ pub(crate) struct RightHandSide<'s, 'a, R: Real> {
     /// then no body may lie inside another.
     pub(crate) anchor: Option<&'s [R]>,
     pub(crate) counters: &'s mut Counters,
+    /// Beginning of the step: what jumps there is taken as it is after it, and at any later time as before.
+    pub(crate) start: R,
 }
 
 impl<R: Real> RightHandSide<'_, '_, R> {
@@ -27,20 +30,8 @@ impl<R: Real> RightHandSide<'_, '_, R> {
     fn parts<'y>(&self, y: &'y [R]) -> (&'y [R], &'y [R]) {
         split_state(&self.model, y)
     }
-}
 
-pub(crate) fn split_state<'y, R: Real>(model: &Model<'_, R>, y: &'y [R]) -> (&'y [R], &'y [R]) {
-    let n = model.head.plan.free_coordinates;
-    let rates = if model.head.plan.formulation == Formulation::LockedMomentum { &[] } else { part(y, n, n) };
-    (part(y, 0, n), rates)
-}
-
-impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
-    fn dim(&self) -> usize {
-        self.model.head.plan.state_len
-    }
-
-    fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()> {
+    fn rates(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()> {
         let model = self.model;
         let (p, dp) = self.parts(y);
         let n = model.head.plan.free_coordinates;
@@ -77,9 +68,40 @@ impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
         }
         Ok(())
     }
+}
+
+pub(crate) fn split_state<'y, R: Real>(model: &Model<'_, R>, y: &'y [R]) -> (&'y [R], &'y [R]) {
+    let n = model.head.plan.free_coordinates;
+    let rates = if model.head.plan.formulation == Formulation::LockedMomentum { &[] } else { part(y, n, n) };
+    (part(y, 0, n), rates)
+}
+
+impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
+    fn dim(&self) -> usize {
+        self.model.head.plan.state_len
+    }
+
+    fn rhs(&mut self, t: R, y: &[R], dydt: &mut [R]) -> Result<()> {
+        self.evaluation.kept.before = t > self.start;
+        let outcome = self.rates(t, y, dydt);
+        self.evaluation.kept.before = false;
+        outcome
+    }
 
     fn clocked(&self) -> bool {
-        self.model.coordinates.iter().any(|c| c.control != Control::Free && !c.constant)
+        self.model.clocked()
+    }
+
+    fn seen(&self, t: R, h: R) -> R {
+        self.model.seen(Seen::Roughly, t, h, self.evaluation.coordinates.channels).length
+    }
+
+    fn next_jump(&self, t: R, end: R) -> Option<R> {
+        self.model.next_jump(t, end, self.evaluation.coordinates.channels).map(|(t, _)| t)
+    }
+
+    fn jumps_at(&self, t: R) -> bool {
+        self.model.jump_at(t, self.evaluation.coordinates.channels).0 != Jump::None
     }
 
     /// The reach of the link that a coordinate moves, or a radian; for a rate that it covers within the step.

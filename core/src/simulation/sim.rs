@@ -3,7 +3,7 @@
 //!
 //! Tested by `tests/driving`, `tests/allocation`.
 
-use crate::base::memory::{at, copy, put};
+use crate::base::memory::{at, copy, copy_some, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Dims, Evaluation, Kept};
@@ -15,8 +15,8 @@ use crate::linear::lu::Factorization;
 use crate::model::signal::CHANNEL_LEN;
 use crate::model::{Control, Formulation, Model, ModelHead};
 use crate::simulation::right_hand_side::{RightHandSide, split_state};
-use crate::simulation::state::{Clock, Method, Progress, State, StateDims, Watch};
-use crate::simulation::time_error::TimeError;
+use crate::simulation::state::{Balance, Clock, Method, Missed, Progress, State, StateDims, Watch};
+use crate::simulation::time_error::{Rough, TimeError};
 
 /// Steps that one call of [`Sim::advance`] may make, unless [`Sim::set_step_limit`] says otherwise.
 pub const STEP_LIMIT: u64 = 1_000_000;
@@ -119,7 +119,12 @@ impl<'a, R: Real> Sim<'a, R> {
             worst_time: R::zero(),
             coarsest: R::zero(),
             coarsest_time: R::zero(),
+            late: R::zero(),
+            rough: Rough::nothing(),
             watch: Watch::Nothing,
+            missed: Missed::nothing(),
+            torn: None,
+            balance: Balance::unknown(),
         };
         progress.set_clock();
         Ok(SimHead { progress, kept: Kept::default() })
@@ -223,7 +228,9 @@ impl<'a, R: Real> Sim<'a, R> {
     ///   which are Runge–Kutta.
     /// - `Rk4`: by comparison with a formula of order 7 through the rates known (see [`Rk4`]); lags one step behind, and
     ///   begins after seven equal steps.
-    /// - `Gauss6`: none. Compare with half the step, or watch the energy.
+    /// - Both, where a jump of the drives or a shortened step comes before that: by an embedded formula of order 2, which gives more
+    ///   than the error.
+    /// - `Gauss6`: none. Compare with half the step, or watch [`Sim::energy_drift`].
     ///
     /// No estimate takes an evaluation. None sees the error of space, for which there is [`Sim::resolution`].
     pub fn time_error(&self) -> TimeError<R> {
@@ -266,22 +273,6 @@ impl<'a, R: Real> Sim<'a, R> {
         self.evaluation.kept.factorization()
     }
 
-    /// Adds the last step's estimated error to what [`Sim::time_error`] tells.
-    pub(crate) fn note_error(&mut self, estimated: bool, t: R, h: R) {
-        let (n, memory) = (self.state.y.len(), &*self.state.integrator);
-        let error = match self.progress.method {
-            _ if !estimated => None,
-            Method::Rk4 { .. } => self.progress.rk4.error(n, memory),
-            Method::Abm4 { .. } => self.progress.abm4.error(n, memory),
-            Method::Adams { .. } => self.progress.adams.error(memory),
-            Method::Gauss6 { .. } => None,
-        };
-        let relative = self.progress.time_error.add(error, h, &self.model);
-        if relative > self.progress.coarsest {
-            (self.progress.coarsest, self.progress.coarsest_time) = (relative, t);
-        }
-    }
-
     /// The integrated state: free coordinates, their rates (not for a lone swimmer, whose rates follow from its
     /// impulse), and last the work of the drives if anything is driven.
     pub fn state(&self) -> &[R] {
@@ -316,13 +307,19 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(e);
         }
         self.progress.watch = Watch::Nothing;
+        (self.progress.missed, self.progress.torn, self.progress.balance) =
+            (Missed::nothing(), None, Balance::unknown());
         self.restart();
-        self.progress.time_error = TimeError::default();
+        (self.progress.time_error, self.progress.late) = (TimeError::default(), R::zero());
         Ok(())
     }
 
     /// Sets a channel: (t, u, u̇, ü) at both ends of the coming step, quintic in between (constant outside). For a torque these
-    /// are ν, ν̇ and ν̈. The integrator starts anew if it could have looked past the present time.
+    /// are ν, ν̇ and ν̈. What continues the piece before (u, u̇, ü of a motion, ν of a torque, within rounding) does not disturb the
+    /// integrator, nor does the same piece again. Where ü or ν jumps, the fixed-step methods forget the past rates, and
+    /// [`Method::Adams`] keeps step and order unless its error estimate objects. A motion whose u or u̇ jumps once it has begun is
+    /// noticed as `DriveUnresolved`: it would take an impulse, which is not made. Only [`Sim::advance_dense`] may have looked past the
+    /// present time; then the integrator starts anew.
     ///
     /// # Errors
     /// `Unsupported` if there is no such channel, `NotFinite`, `BadTable` if the times do not increase.
@@ -336,12 +333,17 @@ impl<'a, R: Real> Sim<'a, R> {
         if channel >= self.model.head.channels {
             return Err(Error::new(Status::Unsupported).of("channel", channel as f64));
         }
-        for (k, x) in from.into_iter().chain(to).enumerate() {
-            put(self.state.commands, channel * CHANNEL_LEN + k, x);
+        let (mut old, mut new) = ([R::zero(); CHANNEL_LEN], [R::zero(); CHANNEL_LEN]);
+        copy(&mut old, part(self.state.commands, channel * CHANNEL_LEN, CHANNEL_LEN));
+        copy_some(&mut new, &from);
+        copy_some(part_mut(&mut new, 4, 4), &to);
+        if old == new {
+            return Ok(());
         }
+        copy(part_mut(self.state.commands, channel * CHANNEL_LEN, CHANNEL_LEN), &new);
         copy(self.evaluation.coordinates.channels, self.state.commands);
         self.evaluation.kept.shown = false;
-        self.restart();
+        self.follow_channel(channel, &old, &new);
         Ok(())
     }
 
@@ -364,6 +366,7 @@ impl<'a, R: Real> Sim<'a, R> {
             impulse: self.progress.impulse,
             anchor: None,
             counters: &mut self.progress.counters,
+            start: t,
         };
         let result = system.rhs(t, y, ydot);
         if result.is_err() {

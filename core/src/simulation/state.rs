@@ -7,7 +7,7 @@ use crate::dynamics::indicators::Resolution;
 use crate::integrate::{Abm4, Adams, Gauss6, Rk4};
 use crate::model::ModelHead;
 use crate::model::signal::CHANNEL_LEN;
-use crate::simulation::time_error::TimeError;
+use crate::simulation::time_error::{Rough, TimeError};
 
 /// Integrator of a simulation.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -71,8 +71,77 @@ pub(crate) struct Progress<R> {
     /// Largest estimated error of a step of that call (see [`TimeError::add`]), and when it was made.
     pub(crate) coarsest: R,
     pub(crate) coarsest_time: R,
+    /// The same of a step before that call, which was estimated after its own.
+    pub(crate) late: R,
+    /// Upper estimates of the steps since a start, a jump or a shortened step.
+    pub(crate) rough: Rough<R>,
     /// What `worst` belongs to.
     pub(crate) watch: Watch,
+    /// The drive that the steps of that call missed most of.
+    pub(crate) missed: Missed<R>,
+    /// A channel was set to another position or speed than it had: its coordinate.
+    pub(crate) torn: Option<usize>,
+    /// What the balance of energy is held against.
+    pub(crate) balance: Balance<R>,
+}
+
+/// A drive that steps were too long for.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Missed<R> {
+    /// Its coordinate.
+    pub(crate) coordinate: usize,
+    /// The longest step that would have seen what it did, s; 0 if it jumped; `MAX` if nothing was missed.
+    pub(crate) length: R,
+    /// When the step began.
+    pub(crate) time: R,
+}
+
+impl<R: Real> Missed<R> {
+    pub(crate) fn nothing() -> Self {
+        Missed { coordinate: 0, length: R::MAX, time: R::zero() }
+    }
+}
+
+/// Energy at the first time it was asked for, and the largest kinetic energy met.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Balance<R> {
+    /// Total − work; NaN before.
+    pub(crate) first: R,
+    /// Sum of the sizes of its parts: what rounding goes by.
+    pub(crate) size: R,
+    pub(crate) kinetic: R,
+    /// Largest velocity of a link met, m/s or rad/s.
+    pub(crate) speed: R,
+    /// Total − work − `first`, and when that was.
+    pub(crate) drift: R,
+    pub(crate) time: R,
+}
+
+impl<R: Real> Balance<R> {
+    pub(crate) fn unknown() -> Self {
+        let zero = R::zero();
+        Balance { first: R::NAN, size: zero, kinetic: zero, speed: zero, drift: zero, time: zero }
+    }
+
+    /// Adds energies of a state: total − work, and its parts, of which the first two are kinetic; and the links' velocities.
+    pub(crate) fn add(&mut self, balance: R, parts: &[R; 6], velocities: &[R], time: R) {
+        let [fluid, bodies, ..] = *parts;
+        self.speed = velocities.iter().fold(self.speed, |m, v| m.max(v.abs()));
+        self.kinetic = self.kinetic.max(fluid + bodies);
+        self.size = self.size.max(parts.iter().fold(R::zero(), |s, x| s + x.abs()));
+        if self.first.is_nan() {
+            self.first = balance;
+        }
+        (self.drift, self.time) = (balance - self.first, time);
+    }
+
+    /// Largest drift that is not noticed: a thousandth of the kinetic energy, what a hundred times the tolerance of velocities that was
+    /// asked for makes of it, and rounding.
+    pub(crate) fn allowed(&self, tolerance: R) -> R {
+        let error = if self.speed > R::zero() { R::lit(100.0) * tolerance / self.speed } else { R::zero() };
+        let share = R::lit(1e-3) + error * (R::TWO + error);
+        (share * self.kinetic).max(R::lit(256.0) * R::EPSILON * self.size)
+    }
 }
 
 /// How the time shown came about.
@@ -87,6 +156,12 @@ pub(crate) enum Clock<R> {
 }
 
 impl<R: Real> Progress<R> {
+    /// Largest drift of the energy that is not noticed.
+    pub(crate) fn allowed_drift(&self) -> R {
+        let tolerance = if let Method::Adams { absolute, .. } = self.method { absolute } else { R::zero() };
+        self.balance.allowed(tolerance)
+    }
+
     /// The next step starts anew from the time shown.
     pub(crate) fn set_clock(&mut self) {
         self.clock = match self.method {

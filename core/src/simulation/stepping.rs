@@ -10,9 +10,10 @@ use crate::dynamics::indicators::Resolution;
 use crate::fluid::contact::{set_anchor, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::model::Formulation;
+use crate::model::signal::Jump;
 use crate::simulation::right_hand_side::{RightHandSide, split_state};
 use crate::simulation::sim::Sim;
-use crate::simulation::state::{Clock, Method, Watch};
+use crate::simulation::state::{Clock, Method, Missed, Watch};
 
 impl<R: Real> Sim<'_, R> {
     /// One step of the method (for `Adams` one step of its own choice): as many evaluations as [`Method`] says, each O(N³) in the
@@ -24,7 +25,8 @@ impl<R: Real> Sim<'_, R> {
         self.begin_watch();
         match self.progress.method {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
-                self.fixed_step(step, true)?;
+                let h = self.resolving(step);
+                self.fixed_step(h, h == step)?;
             }
             Method::Adams { .. } => {
                 self.adams_step(R::MAX)?;
@@ -50,8 +52,15 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
     pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
-        if !(t_out.is_finite() && t_stop >= t_out && t_out >= self.progress.time) {
-            return Err(Error::new(Status::BadStep).of("t", t_out.to_f64()));
+        for (what, t) in [("t", t_out), ("t_stop", t_stop)] {
+            if !t.is_finite() {
+                return Err(Error::new(Status::NotFinite).of(what, t.to_f64()));
+            }
+        }
+        for (what, t, before) in [("t", t_out, self.progress.time), ("t_stop", t_stop, t_out)] {
+            if t < before {
+                return Err(Error::new(Status::PastTime).of(what, t.to_f64()).beside(before.to_f64()));
+            }
         }
         if t_out == self.progress.time {
             return Ok(());
@@ -73,16 +82,20 @@ impl<R: Real> Sim<'_, R> {
             Method::Rk4 { step } | Method::Abm4 { step } | Method::Gauss6 { step } => {
                 // Rounding of the time must not make a step of almost no length.
                 let slack = step * R::lit(1e-6).max(R::lit(8.0) * R::EPSILON);
+                let needed = -(-((t_out - self.progress.time - slack) / step)).floor().to_f64();
+                if needed > left as f64 {
+                    return Err(Error::new(Status::TooManySteps).of("steps", needed).beside(left as f64));
+                }
                 loop {
                     let rest = t_out - self.progress.time;
                     if rest <= slack {
                         break;
                     }
                     self.spend(&mut left)?;
-                    if rest + slack >= step {
-                        self.fixed_step(step, true)?;
-                    } else {
-                        self.fixed_step(rest, false)?;
+                    let (wish, regular) = if rest + slack >= step { (step, true) } else { (rest, false) };
+                    let h = self.resolving(wish);
+                    self.fixed_step(h, regular && h == wish)?;
+                    if !regular && h == wish {
                         break;
                     }
                 }
@@ -102,6 +115,7 @@ impl<R: Real> Sim<'_, R> {
 
     /// Forgets the integrator's past, as after a jump of the drives.
     pub fn restart(&mut self) {
+        self.end_stretch();
         self.forget_steps();
         self.progress.set_clock();
     }
@@ -119,7 +133,9 @@ impl<R: Real> Sim<'_, R> {
         let here = self.evaluation.resolution(&model);
         if self.progress.watch != Watch::Present {
             (self.progress.worst, self.progress.worst_time) = (Resolution::default(), t);
-            self.progress.coarsest = R::zero();
+            self.progress.missed = Missed::nothing();
+            (self.progress.coarsest, self.progress.coarsest_time) = (self.progress.late, self.progress.time);
+            self.progress.late = R::zero();
             self.progress.watch = Watch::Present;
         }
         let worst = self.progress.worst;
@@ -132,9 +148,9 @@ impl<R: Real> Sim<'_, R> {
     /// One step of a fixed-step method; `regular` steps keep the multistep history.
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
-        let t = self.progress.time;
+        let (t, moved) = (self.progress.time, self.progress.watch != Watch::Nothing);
         if !regular {
-            self.forget_steps();
+            self.forget_rates();
         }
         let mut system = RightHandSide {
             model: self.model,
@@ -142,6 +158,7 @@ impl<R: Real> Sim<'_, R> {
             impulse: self.progress.impulse,
             anchor: Some(self.state.anchor),
             counters: &mut self.progress.counters,
+            start: t,
         };
         let (y, memory) = (&mut *self.state.y, &mut *self.state.integrator);
         let stepped = match self.progress.method {
@@ -153,9 +170,10 @@ impl<R: Real> Sim<'_, R> {
         };
         let next = match self.progress.clock {
             // Counted, not summed: the rounding of h does not pile up.
-            Clock::Counted { base, steps } if regular => base + R::count(steps as usize + 1) * h,
+            Clock::Counted { base, steps } if regular => base + R::lit((steps + 1) as f64) * h,
             _ => t + h,
         };
+        let made = stepped.is_ok();
         let arrived = stepped.and_then(|()| {
             self.progress.time = next;
             self.show_checked()
@@ -163,22 +181,36 @@ impl<R: Real> Sim<'_, R> {
         if let Err(e) = arrived {
             copy(self.state.y, self.state.saved);
             self.progress.time = t;
-            self.forget_steps();
+            if made {
+                self.forget_steps();
+            }
             self.progress.counters.rejected += 1;
             self.show()?;
             return Err(e);
         }
         self.watch(next);
+        self.note_drives(t, h, moved);
         self.progress.counters.steps += 1;
         self.note_error(regular, next, h);
         match &mut self.progress.clock {
             Clock::Counted { steps, .. } if regular => *steps += 1,
             _ => {
-                self.forget_steps();
+                self.forget_rates();
                 self.progress.set_clock();
             }
         }
+        if self.model.jump_at(next, self.evaluation.coordinates.channels).0 != Jump::None {
+            self.forget_rates();
+        }
         Ok(())
+    }
+
+    /// Forgets what the fixed-step methods remember of earlier rates: they have jumped.
+    pub(crate) fn forget_rates(&mut self) {
+        self.end_stretch();
+        self.progress.rk4.jump();
+        self.progress.abm4.jump();
+        self.progress.gauss6.jump();
     }
 
     /// Forgets what the fixed-step methods remember of earlier steps.
@@ -190,7 +222,7 @@ impl<R: Real> Sim<'_, R> {
 
     /// One accepted step of the variable-step method.
     fn adams_step(&mut self, t_stop: R) -> Result<()> {
-        let mut adams = self.progress.adams;
+        let (mut adams, moved) = (self.progress.adams, self.progress.watch != Watch::Nothing);
         if !self.progress.runs() {
             adams.start(self.progress.time, self.state.y, self.state.integrator)?;
             self.progress.clock = Clock::Running;
@@ -205,11 +237,13 @@ impl<R: Real> Sim<'_, R> {
             impulse: self.progress.impulse,
             anchor: Some(self.state.anchor),
             counters: &mut self.progress.counters,
+            start: adams.time(),
         };
         let outcome = adams.step(&mut system, t_stop, self.state.integrator);
         self.progress.adams = adams;
         outcome?;
         self.watch(adams.time());
+        self.note_drives(adams.time() - adams.last_step(), adams.last_step(), moved);
         self.note_error(true, adams.time(), adams.last_step());
         let y = self.progress.adams.state(self.state.integrator);
         let (p, _) = split_state(&self.model, y);

@@ -18,7 +18,7 @@ pub struct TimeError<R> {
     pub speed: R,
     /// Of the rates of angles, rad/s; NaN and 0 as above.
     pub spin: R,
-    /// Sum over all steps that could be estimated, m.
+    /// Sum over all steps that could be estimated, m; NaN if there was none.
     pub length_sum: R,
     /// The same of angles, rad.
     pub angle_sum: R,
@@ -32,50 +32,96 @@ pub struct TimeError<R> {
 
 impl<R: Real> Default for TimeError<R> {
     fn default() -> Self {
-        let (nan, zero) = (R::NAN, R::zero());
+        let nan = R::NAN;
         TimeError {
             length: nan,
             angle: nan,
             speed: nan,
             spin: nan,
-            length_sum: zero,
-            angle_sum: zero,
-            speed_sum: zero,
-            spin_sum: zero,
+            length_sum: nan,
+            angle_sum: nan,
+            speed_sum: nan,
+            spin_sum: nan,
             unknown: 0,
         }
     }
 }
 
-impl<R: Real> TimeError<R> {
-    /// Adds a step of length `h` whose state has the free coordinates of a model, then (if it has) their rates. Returns the largest
-    /// error of a coordinate, with that of its rate over another step, in reaches of the link that it moves or in radians; 0 if the
-    /// step could not be estimated.
-    pub(crate) fn add(&mut self, error: Option<&[R]>, h: R, model: &Model<'_, R>) -> R {
-        let Some(error) = error else {
-            self.unknown += 1;
-            return R::zero();
-        };
+/// Errors of one step, or their sums: of lengths, angles, their rates; and the largest error of a coordinate, with that of its rate over
+/// another step, in reaches of the link that it moves or in radians.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct StepError<R> {
+    kinds: [R; 4],
+    pub(crate) relative: R,
+}
+
+impl<R: Real> StepError<R> {
+    pub(crate) fn zero() -> Self {
+        StepError { kinds: [R::zero(); 4], relative: R::zero() }
+    }
+
+    /// Of a step of length `h` whose state has the free coordinates of a model, then (if it has) their rates.
+    pub(crate) fn of(error: &[R], h: R, model: &Model<'_, R>) -> Self {
         let n = model.head.plan.free_coordinates;
         let rates = model.head.plan.formulation != Formulation::LockedMomentum;
         let zero = R::zero();
-        let mut relative = zero;
-        (self.length, self.angle, self.speed, self.spin) = (zero, zero, zero, zero);
+        let ([mut length, mut angle, mut speed, mut spin], mut relative) = ([zero; 4], zero);
         for c in model.coordinates.iter().filter(|c| c.control != Control::Prescribed) {
             let own = at(error, c.free).abs();
             let rate = if rates { at(error, n + c.free).abs() } else { zero };
             if model.is_angle(c) {
-                (self.angle, self.spin) = (self.angle.max(own), self.spin.max(rate));
+                (angle, spin) = (angle.max(own), spin.max(rate));
                 relative = relative.max(own + rate * h.abs());
             } else {
-                (self.length, self.speed) = (self.length.max(own), self.speed.max(rate));
+                (length, speed) = (length.max(own), speed.max(rate));
                 relative = relative.max((own + rate * h.abs()) / model.reach_of(c));
             }
         }
-        self.length_sum += self.length;
-        self.angle_sum += self.angle;
-        self.speed_sum += self.speed;
-        self.spin_sum += self.spin;
-        relative
+        StepError { kinds: [length, angle, speed, spin], relative }
+    }
+}
+
+/// Upper estimates of the steps since the integrator knew nothing of the past: they count where no better ones come.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub(crate) struct Rough<R> {
+    pub(crate) last: StepError<R>,
+    pub(crate) sum: StepError<R>,
+    pub(crate) steps: u64,
+    /// Better ones have come.
+    pub(crate) better: bool,
+}
+
+impl<R: Real> Rough<R> {
+    pub(crate) fn nothing() -> Self {
+        Rough { last: StepError::zero(), sum: StepError::zero(), steps: 0, better: false }
+    }
+
+    pub(crate) fn add(&mut self, error: StepError<R>) {
+        (self.last, self.steps) = (error, self.steps + 1);
+        for (sum, x) in self.sum.kinds.iter_mut().zip(error.kinds) {
+            *sum += x;
+        }
+        self.sum.relative = self.sum.relative.max(error.relative);
+    }
+}
+
+impl<R: Real> TimeError<R> {
+    /// Adds a step.
+    pub(crate) fn add(&mut self, error: &StepError<R>) {
+        self.add_sum(error, error);
+    }
+
+    /// Adds steps that had been counted as unknown.
+    pub(crate) fn add_rough(&mut self, rough: &Rough<R>) {
+        self.unknown = self.unknown.saturating_sub(rough.steps);
+        self.add_sum(&rough.last, &rough.sum);
+    }
+
+    fn add_sum(&mut self, last: &StepError<R>, sum: &StepError<R>) {
+        [self.length, self.angle, self.speed, self.spin] = last.kinds;
+        let sums = [&mut self.length_sum, &mut self.angle_sum, &mut self.speed_sum, &mut self.spin_sum];
+        for (total, x) in sums.into_iter().zip(sum.kinds) {
+            *total = if total.is_nan() { x } else { *total + x };
+        }
     }
 }

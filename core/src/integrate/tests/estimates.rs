@@ -30,7 +30,7 @@ fn mismatch(h: f64, n: usize, lag: usize, mut step: impl FnMut(f64, &mut [f64]) 
 #[test]
 fn estimated_error_of_rk4_is_the_local_error_of_the_step_before() {
     let h = 0.02;
-    let (mut m, mut memory) = (Rk4::new(), vec![0.0; 13]);
+    let (mut m, mut memory) = (Rk4::new(), vec![0.0; 14]);
     let mismatch = mismatch(h, 200, 1, |t, y| {
         m.step(&mut ode(1, cosine_growth), t, h, y, &mut memory).unwrap();
         m.error(1, &memory).map(|e| e[0])
@@ -49,4 +49,23 @@ fn estimated_error_of_abm4_is_the_local_error_of_the_step() {
     });
     std::println!("abm4: {mismatch}");
     assert!(mismatch < 0.1, "{mismatch}");
+}
+
+#[test]
+fn rough_error_of_rk4_is_above_the_error_of_every_step() {
+    for h in [0.01, 0.05, 0.2] {
+        let (mut m, mut memory) = (Rk4::new(), vec![0.0; 14]);
+        let (mut y, mut z, mut exact, mut other) = ([0.5], [0.5], Gauss6::new(), vec![0.0; 20]);
+        for k in 0..10 {
+            let t = h * f64::from(k);
+            m.step(&mut ode(1, cosine_growth), t, h, &mut y, &mut memory).unwrap();
+            exact.step(&mut ode(1, cosine_growth), t, h, &mut z, &mut other).unwrap();
+            let rough = m.rough_error(1, &memory).map(|e| e[0].abs()).unwrap();
+            let made = (y[0] - z[0]).abs();
+            assert!(rough > made && rough < 1e5 * made, "{h}, step {k}: {rough} {made}");
+            y = z;
+        }
+        m.jump();
+        assert!(m.rough_error(1, &memory).is_none());
+    }
 }

@@ -76,11 +76,11 @@ fn a_failing_right_hand_side_changes_nothing_and_the_run_may_go_on() {
         for i in 0..8 {
             broken.set(true);
             let before = (y, z);
-            assert_eq!(rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 52]).unwrap_err().status, status);
+            assert_eq!(rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 56]).unwrap_err().status, status);
             assert_eq!(abm4.step(&mut system, 0.0, 0.01, &mut z, &mut memory).unwrap_err().status, status);
             assert_eq!((y, z), before, "{i}");
             broken.set(false);
-            rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 52]).unwrap();
+            rk4.step(&mut system, 0.0, 0.01, &mut y, &mut [0.0; 56]).unwrap();
             abm4.step(&mut system, 0.0, 0.01, &mut z, &mut memory).unwrap();
         }
         assert!(distance(&y, &ellipse(0.6, 0.08)) < 1e-6 && distance(&z, &ellipse(0.6, 0.08)) < 1e-6);
