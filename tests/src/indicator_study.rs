@@ -1,24 +1,9 @@
 //! Random scenes, and how their errors compare with the indicators: of added mass, force and accelerations.
 
-use crate::{body, disc, link, size, wall};
+use crate::{Numbers, body, disc, link, size, wall};
 use nekton::scene::{Body, Link, Quadrature, Scene, Shape, Wall};
 use nekton::{Method, ModelBuf, Sim, SimBuf};
 use std::fmt::Write;
-
-/// A sequence of numbers, the same on every machine.
-struct Numbers(u64);
-
-impl Numbers {
-    fn between(&mut self, from: f64, to: f64) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        from + (to - from) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn chance(&mut self, share: f64) -> bool {
-        self.between(0.0, 1.0) < share
-    }
-}
 
 /// Outline, pose, velocity, circulation.
 type Part = (Shape<'static, f64>, [f64; 3], [f64; 3], f64);
@@ -160,7 +145,7 @@ const RANGES: [[f64; 2]; 4] = [[1e-4, 1e-3], [1e-3, 1e-2], [1e-2, 0.1], [0.1, 1.
 
 /// Evaluates random scenes until there are as many evaluations as wanted.
 fn study(wanted: usize) -> Vec<Seen> {
-    let mut number = Numbers(88_172_645_463_325_252);
+    let mut number = Numbers::new(88_172_645_463_325_252);
     let mut seen = Vec::new();
     while seen.len() < wanted {
         let gap = 10f64.powf(number.between(-4.0, 0.0));

@@ -8,11 +8,33 @@ use std::sync::Arc;
 
 pub mod near;
 
+pub mod drive_study;
 pub mod extremes;
 pub mod indicator_study;
 pub mod long_run;
 pub mod printed;
 pub mod regrading;
+
+/// A sequence of numbers, the same on every machine.
+pub struct Numbers(u64);
+
+impl Numbers {
+    /// A sequence of its own for every seed but 0.
+    pub fn new(seed: u64) -> Self {
+        Numbers(seed)
+    }
+    /// The next number, from a range.
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        from + (to - from) * (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+    /// True in this share of cases.
+    pub fn chance(&mut self, share: f64) -> bool {
+        self.between(0.0, 1.0) < share
+    }
+}
 
 /// What a scalar type allows; about ten times what is measured.
 #[derive(Clone, Copy, Debug)]

@@ -219,6 +219,14 @@ impl<R: Real> SignalRecord<R> {
         }
     }
 
+    /// First time strictly within (t, end) at which a table is less smooth than in between.
+    pub(crate) fn next_kink(&self, motion: bool, t: R, end: R, store: &[R], channels: &[R]) -> Option<R> {
+        match self.kind {
+            Kind::Constant(_) | Kind::Harmonic(_) => None,
+            Kind::Table | Kind::Channel => self.rows(store, channels).next_kink(motion, t, end),
+        }
+    }
+
     /// First time strictly within (t, end) at which something jumps.
     pub(crate) fn next_jump(&self, motion: bool, t: R, end: R, store: &[R], channels: &[R]) -> Option<R> {
         match self.kind {

@@ -161,6 +161,16 @@ impl<R: Real> Rows<'_, R> {
         self.in_region(self.region(at), at.t)
     }
 
+    /// By how much d³u/dt³ jumps at a row between two pieces.
+    fn kink(&self, k: usize) -> R {
+        let (before, behind) = (self.piece(k.saturating_sub(1)), self.piece(k));
+        let cube = |piece: &Piece<R>| piece.h * piece.h * piece.h;
+        let [_, _, c3, c4, c5] = before.c;
+        let end = (R::lit(6.0) * c3 + R::lit(24.0) * c4 + R::lit(60.0) * c5) / cube(&before);
+        let [_, _, c3, ..] = behind.c;
+        (end - R::lit(6.0) * c3 / cube(&behind)).abs()
+    }
+
     /// What changes suddenly at a row: (value, rate, acceleration) before and after it.
     fn sides(&self, k: usize) -> ([R; 3], [R; 3]) {
         let (first, last) = self.of_one_time(k);
@@ -204,9 +214,31 @@ impl<R: Real> Rows<'_, R> {
             .map(|k| self.time(k))
     }
 
+    /// First row strictly within (t, end) at which the drive loses smoothness that matters within that time: by more than a thousandth of
+    /// its size. A method without an estimate ends its steps there. O(rows in between).
+    pub(super) fn next_kink(&self, motion: bool, t: R, end: R) -> Option<R> {
+        let first = match self.row_at(t) {
+            Some(k) => self.of_one_time(k).1 + 1,
+            None => self.rows_until(t),
+        };
+        let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
+        let h = end - t;
+        let size = |k: usize| if motion { self.row(k)[3].abs() } else { self.row(k)[1].abs() };
+        (first..last).take_while(|k| self.time(*k) < end).find(|k| {
+            let (row, flat) = (*k, |k: usize| self.piece(k).c.iter().all(|c| *c == R::zero()));
+            if row == 0 || row + 1 == self.count() {
+                return self.count() > 1 && !flat(row.saturating_sub(usize::from(row > 0)));
+            }
+            let jump = self.kink(row) * if motion { h } else { h * h * h };
+            let sizes = [row - 1, row, row + 1].map(size).into_iter().fold(R::zero(), R::max);
+            jump > R::lit(1e-3) * sizes
+        })
+        .map(|k| self.time(k))
+    }
+
     /// See [`crate::model::signal::SignalRecord::seen`]. O(rows in the step).
     pub(super) fn seen(&self, motion: bool, share: Seen, t: R, h: R) -> R {
-        let share = R::lit(match share {
+        let part = R::lit(match share {
             Seen::Roughly => 0.5,
             Seen::Well => 0.05,
         });
@@ -219,19 +251,33 @@ impl<R: Real> Rows<'_, R> {
         };
         let first = drives(begin);
         let mut limit = h;
+        if share == Seen::Well {
+            // Within one quintic, which a method of order 6 integrates exactly.
+            let next = match self.row_at(t) {
+                Some(k) => self.of_one_time(k).1 + 1,
+                None => self.rows_until(t),
+            };
+            if next < self.count() {
+                limit = limit.min(self.time(next) - t);
+            }
+        }
         // Every round at least halves the step, or ends it where something begins.
         for _ in 0..1100 {
             let end = t + limit;
             let last = drives(Moment { t: end, after: false });
-            let allowed = share * first.abs().max(last.abs());
+            let allowed = part * first.abs().max(last.abs());
             let line = |s: R| first + (last - first) * ((s - t) / limit);
             let mut pieces = start.unwrap_or(0)..self.count().saturating_sub(1);
             let unseen = pieces.by_ref().take_while(|k| self.time(*k) < end).find(|k| {
                 let (from, to) = (self.time(*k).max(t), self.time(*k + 1).min(end));
-                if to <= from {
+                if to - from <= self.slack(*k, end) {
                     return false;
                 }
                 let piece = self.piece(*k);
+                // A kink of ü inside a step is half unseen: the step ends there, or is so short that it does not matter.
+                if motion && *k > 0 && self.time(*k) > t && self.kink(*k) * limit > R::lit(0.01) * first.abs().max(last.abs()) {
+                    return true;
+                }
                 let allowed = allowed + piece.rounding(motion);
                 [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|x| {
                     let s = from + R::lit(x) * (to - from);

@@ -160,7 +160,7 @@ impl<R: Real> Sim<'_, R> {
         self.refresh()?;
         let model = self.model;
         self.evaluation.drive_forces(&model);
-        let now = Moment { t: self.progress.time, after: true };
+        let now = Moment { t: self.progress.time, after: !self.progress.arrived };
         let joints = model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3);
         for ((torque, power), (k, c)) in torque.iter_mut().zip(power.iter_mut()).zip(joints) {
             let (u, du) = (at(self.evaluation.coordinates.s, k), at(self.evaluation.coordinates.ds, k));

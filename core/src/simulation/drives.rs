@@ -15,7 +15,9 @@ impl<R: Real> Sim<'_, R> {
     pub(crate) fn resolving(&self, wish: R) -> R {
         let Method::Gauss6 { .. } = self.progress.method else { return wish };
         let (t, channels) = (self.progress.time, &*self.evaluation.coordinates.channels);
-        let room = self.model.next_jump(t, t + wish, channels).map_or(wish, |(jump, _)| jump - t);
+        let end = self.model.next_jump(t, t + wish, channels).map_or(t + wish, |(jump, _)| jump);
+        let kink = self.model.next_kink(t, end, channels);
+        let room = if kink < t + wish { kink - t } else { wish };
         let seen = |share| self.model.seen(share, t, room, channels).length;
         let h = if seen(Seen::Roughly) < room { seen(Seen::Well) } else { room };
         h.max(R::lit(16.0) * R::EPSILON * t.abs()).min(wish)

@@ -124,6 +124,7 @@ impl<'a, R: Real> Sim<'a, R> {
             watch: Watch::Nothing,
             missed: Missed::nothing(),
             torn: None,
+            arrived: false,
             balance: Balance::unknown(),
         };
         progress.set_clock();
@@ -291,7 +292,8 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(Status::NotFinite.into());
         }
         copy(self.state.saved, self.state.y);
-        let before = self.progress.time;
+        let (before, arrived) = (self.progress.time, self.progress.arrived);
+        self.progress.arrived = false;
         copy(self.state.y, y);
         self.progress.time = t;
         let mut shown = self.show();
@@ -302,7 +304,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         if let Err(e) = shown {
             copy(self.state.y, self.state.saved);
-            self.progress.time = before;
+            (self.progress.time, self.progress.arrived) = (before, arrived);
             self.show()?;
             return Err(e);
         }
@@ -342,7 +344,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         copy(part_mut(self.state.commands, channel * CHANNEL_LEN, CHANNEL_LEN), &new);
         copy(self.evaluation.coordinates.channels, self.state.commands);
-        self.evaluation.kept.shown = false;
+        (self.evaluation.kept.shown, self.progress.arrived) = (false, false);
         self.follow_channel(channel, &old, &new);
         Ok(())
     }

@@ -81,6 +81,8 @@ pub(crate) struct Progress<R> {
     pub(crate) missed: Missed<R>,
     /// A channel was set to another position or speed than it had: its coordinate.
     pub(crate) torn: Option<usize>,
+    /// A step has led to the state shown: what jumps there is shown as it was before.
+    pub(crate) arrived: bool,
     /// What the balance of energy is held against.
     pub(crate) balance: Balance<R>,
 }

@@ -174,13 +174,14 @@ impl<R: Real> Sim<'_, R> {
             _ => t + h,
         };
         let made = stepped.is_ok();
+        let before = self.progress.arrived;
         let arrived = stepped.and_then(|()| {
-            self.progress.time = next;
+            (self.progress.time, self.progress.arrived) = (next, true);
             self.show_checked()
         });
         if let Err(e) = arrived {
             copy(self.state.y, self.state.saved);
-            self.progress.time = t;
+            (self.progress.time, self.progress.arrived) = (t, before);
             if made {
                 self.forget_steps();
             }
@@ -260,7 +261,7 @@ impl<R: Real> Sim<'_, R> {
         } else {
             adams.interpolate(t, self.state.integrator, self.state.y, self.state.rate)?;
         }
-        self.progress.time = t;
+        (self.progress.time, self.progress.arrived) = (t, true);
         self.show()
     }
 
@@ -269,6 +270,7 @@ impl<R: Real> Sim<'_, R> {
         if !self.state.y.iter().all(|x| x.is_finite()) {
             return Err(Status::NonFiniteState.into());
         }
+        self.evaluation.kept.before = self.progress.arrived;
         let (p, dp) = split_state(&self.model, self.state.y);
         let zero = [R::zero(); 3];
         // A lone swimmer's rates come later, from its impulse.
@@ -292,7 +294,7 @@ impl<R: Real> Sim<'_, R> {
     /// Positions, velocities and joints of the state.
     pub(crate) fn show(&mut self) -> Result<()> {
         // The arrays belong to another state.
-        self.evaluation.kept.shown = false;
+        (self.evaluation.kept.shown, self.evaluation.kept.before) = (false, self.progress.arrived);
         let model = self.model;
         if model.head.plan.formulation == Formulation::LockedMomentum {
             // The rates follow from the impulse: one factorization.
@@ -324,6 +326,7 @@ impl<R: Real> Sim<'_, R> {
         if self.evaluation.kept.shown {
             return Ok(());
         }
+        self.evaluation.kept.before = self.progress.arrived;
         let model = self.model;
         let (p, dp) = split_state(&model, self.state.y);
         let zero = [R::zero(); 3];
