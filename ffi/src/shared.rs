@@ -5,8 +5,9 @@ use crate::types::{nekton_diag, nekton_status};
 use core::ffi::c_char;
 use nekton::Status;
 
-/// Version of the interface. Goes up with every change that is not compatible.
-pub const NEKTON_ABI_VERSION: u32 = 1;
+/// Version of the interface. Goes up with every change that is not compatible; fields appended to a definition are
+/// compatible, by its struct_size.
+pub const NEKTON_ABI_VERSION: u32 = 2;
 
 /// Capability: nekton_model_create, nekton_sim_create and their free work.
 pub const NEKTON_CAP_ALLOC: u32 = 1;

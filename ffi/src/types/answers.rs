@@ -220,7 +220,7 @@ pub struct GapOut<R> {
     pub second: nekton_place,
 }
 
-/// What a simulation did since its start. Calls that failed count nothing.
+/// What a simulation did since its start. A call that failed counts nothing but steps that it kept.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct nekton_counters {
