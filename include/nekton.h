@@ -494,7 +494,7 @@ typedef struct nekton_method {
     double absolute;
     /** ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps. */
     double max_step;
-    /** ADAMS: first step after a start, s; 0: chosen. Must be 0 for a method of fixed steps. */
+    /** ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps. */
     double first_step;
 } nekton_method;
 

@@ -219,7 +219,7 @@ typedef struct nekton32_method {
     float absolute;
     /** ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps. */
     float max_step;
-    /** ADAMS: first step after a start, s; 0: chosen. Must be 0 for a method of fixed steps. */
+    /** ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps. */
     float first_step;
 } nekton32_method;
 

@@ -9,7 +9,7 @@ classdef Nekton < handle
 %     'tolerance'     of 'adams', relative and absolute (default: the scene's, else 1e-9)
 %     'step'          of 'rk4', 'abm4' and 'gauss6' (default: the scene's)
 %     'MaxStep'       longest step of 'adams' (default: none)
-%     'InitialStep'   first step of 'adams' (default: chosen by itself)
+%     'InitialStep'   first step of 'adams' to be tried (default: chosen by itself)
 %     'controls'      function [c, dc, ddc] = f(t) with the joint angles (or torques) of all joints that no motion is given for,
 %                     and their first and second derivative: columns, in the order of jointNames
 %     'control_step'  time between two calls of it (default 0.05); the angles are quintic in between, so the error is of

@@ -53,7 +53,7 @@ macro_rules! precision {
             use super::{Guarded, check_report};
             use crate::Reached;
             use crate::bytes::Bytes;
-            use crate::scene::{Definition, Number, size, zeroed};
+            use crate::scene::{Definition, Number, own_size, zeroed};
             use core::ptr::{null, null_mut};
             use nekton_ffi::shared::NEKTON_ABI_VERSION;
             use nekton_ffi::types::*;
@@ -105,7 +105,7 @@ macro_rules! precision {
                     let mut plan = zeroed::<nekton_plan>();
                     assert!(model_plan(model, &mut plan) >= 0 && plan.model_bytes == req.size);
                     let method = MethodDef {
-                        struct_size: size::<MethodDef<R>>(bytes),
+                        struct_size: own_size::<MethodDef<R>>(bytes),
                         kind: if bytes.chance(3) { bytes.kind(6) } else { 1 + bytes.below(4) as i32 },
                         step: number(bytes, 0.05),
                         relative: number(bytes, 1e-4),

@@ -117,7 +117,7 @@ impl<R: Number> Store<R> {
     fn wall(&mut self, bytes: &mut Bytes<'_>, size: f64, place: [f64; 2]) -> WallDef<R> {
         WallDef {
             shape: self.shape(bytes, size),
-            struct_size: size::<WallDef<R>>(bytes),
+            struct_size: own_size::<WallDef<R>>(bytes),
             position: place.map(|x| R::of(bytes.real(x))),
             angle: R::of(bytes.real(0.3)),
             nodes: nodes(bytes),
@@ -150,7 +150,7 @@ impl<R: Number> Store<R> {
         }
         link.circulation = R::of(if bytes.below(4) == 0 { bytes.real(0.5) } else { 0.0 });
         (link.mass_kind, link.joint, link.drive) = (bytes.kind(2), bytes.kind(2), bytes.kind(3));
-        link.struct_size = size::<LinkDef<R>>(bytes);
+        link.struct_size = own_size::<LinkDef<R>>(bytes);
         link.nodes = nodes(bytes);
         link.shape = self.shape(bytes, 1.0);
         link.signal = self.signal(bytes);
@@ -159,7 +159,7 @@ impl<R: Number> Store<R> {
 }
 
 /// The size of a definition, or rubbish by which nothing may be read.
-pub fn size<T>(bytes: &mut Bytes<'_>) -> u32 {
+pub fn own_size<T>(bytes: &mut Bytes<'_>) -> u32 {
     let own = size_of::<T>() as u32;
     if !bytes.chance(2) {
         return own;
@@ -191,7 +191,7 @@ impl<R: Number> Definition<R> {
             links.push((0..chain).map(|l| store.link(bytes, l)).collect());
             let real = |bytes: &mut Bytes<'_>, x: f64| R::of(bytes.real(x));
             bodies.push(BodyDef {
-                struct_size: size::<BodyDef<R>>(bytes),
+                struct_size: own_size::<BodyDef<R>>(bytes),
                 pose: [real(bytes, 4.0 * b as f64), real(bytes, 0.1), real(bytes, 1.5)],
                 velocity: [real(bytes, 0.2), real(bytes, -0.1), real(bytes, 0.3)],
                 root: if bytes.below(3) == 0 { bytes.kind(3) } else { NEKTON_ROOT_FREE },
@@ -205,7 +205,7 @@ impl<R: Number> Definition<R> {
         }
         let repulsion = if bytes.below(2) == 0 { 0.0 } else { bytes.real(0.01) };
         let def = SceneDef {
-            struct_size: size::<SceneDef<R>>(bytes),
+            struct_size: own_size::<SceneDef<R>>(bytes),
             abi_version: if bytes.chance(2) { bytes.word() as u32 } else { version },
             fluid_density: R::of(bytes.real(1.0)),
             gravity: R::of(if bytes.below(2) == 0 { 0.0 } else { bytes.real(9.81) }),

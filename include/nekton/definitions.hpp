@@ -32,7 +32,7 @@ template <class R> struct BasicMethod : detail::Api<R>::Method {
     static BasicMethod abm4(R step) { return fixed(NEKTON_METHOD_ABM4, step); }
     /** Implicit Gauss-Legendre of order 6 with a fixed step: the energy does not drift. */
     static BasicMethod gauss6(R step) { return fixed(NEKTON_METHOD_GAUSS6, step); }
-    /** Variable order and step; both tolerances, the longest step (0: none) and the first one (0: chosen). */
+    /** Variable order and step; both tolerances, the longest step (0: none) and the first one to be tried (0: chosen). */
     static BasicMethod adams(R tolerance, R max_step = 0, R first_step = 0)
     {
         BasicMethod method;

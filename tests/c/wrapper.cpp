@@ -34,6 +34,10 @@ template <class R> int run()
     body.velocity[2] = R(0.2);
     const nekton::BasicScene<R> scene(body);
     const auto method = nekton::BasicMethod<R>::rk4(R(0.1));
+    const auto careful = nekton::BasicMethod<R>::adams(R(1e-3), R(0.25), R(0.125));
+    CHECK(careful.kind == NEKTON_METHOD_ADAMS && careful.relative == R(1e-3) && careful.absolute == R(1e-3));
+    CHECK(careful.max_step == R(0.25) && careful.first_step == R(0.125) && careful.struct_size == sizeof careful);
+    CHECK(method.kind == NEKTON_METHOD_RK4 && method.max_step == R(0) && method.first_step == R(0));
 
     nekton::BasicModel<R> model(scene);
     nekton::BasicSim<R> sim(model, method);

@@ -292,6 +292,6 @@ pub struct MethodDef<R> {
     pub absolute: R,
     /// ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps.
     pub max_step: R,
-    /// ADAMS: first step after a start, s; 0: chosen. Must be 0 for a method of fixed steps.
+    /// ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps.
     pub first_step: R,
 }
