@@ -26,11 +26,14 @@ static void check(int ok, const char *what) {
     if (!ok) exit(1);
 }
 
-static char text[200];
-static const char *told(const nekton_diag *diag) {
-    nekton_diag_text(diag, text, sizeof text);
-    return text;
-}
+/* A call that fills diag: what it returns, and a word of what it tells. */
+#define EXPECT(call, status, word)                            \
+    do {                                                      \
+        char text[200];                                       \
+        nekton_status got = (call);                           \
+        nekton_diag_text(&diag, text, sizeof text);           \
+        check(got == (status) && strstr(text, (word)), text); \
+    } while (0)
 
 int main(void) {
     nekton_diag diag;
@@ -62,16 +65,17 @@ int main(void) {
     body.link_count = 2;
     scene.bodies = &body;
     scene.body_count = 1;
-    check(nekton_model_create(&scene, &model, &diag) == NEKTON_OK, "an array of new links");
+    EXPECT(nekton_model_create(&scene, &model, &diag), NEKTON_OK, "ok");
     links[1].colour = 1;
     nekton_model *none = NULL;
-    check(nekton_model_create(&scene, &none, &diag) == NEKTON_E_UNSUPPORTED && !none, told(&diag));
+    EXPECT(nekton_model_create(&scene, &none, &diag), NEKTON_E_UNSUPPORTED, "body 0, link 1: ");
+    check(!none, "nothing was made");
     links[1].colour = 0;
     links[1].link.struct_size = sizeof(nekton_link_def);
-    check(nekton_model_create(&scene, &none, &diag) == NEKTON_E_ABI_VERSION && diag.item == 1, told(&diag));
+    EXPECT(nekton_model_create(&scene, &none, &diag), NEKTON_E_ABI_VERSION, "(struct_size[1] = ");
     links[1].link.struct_size = 0;
-    check(nekton_model_create(&scene, &none, &diag) == NEKTON_E_ABI_VERSION, told(&diag));
-    check(strstr(text, "link_def_init") && strstr(text, "body 0, link 1"), "it says where, and what to call");
+    EXPECT(nekton_model_create(&scene, &none, &diag), NEKTON_E_ABI_VERSION, "link_def_init");
+    check(diag.place.index == 0 && diag.place.link == 1, "it says where, and what to call");
 
     /* An old program's method means what it meant. */
     old_method old;
@@ -79,8 +83,8 @@ int main(void) {
     check((nekton_method_init)((nekton_method *)(void *)&old, sizeof old, NEKTON_ABI_VERSION) == NEKTON_OK, "old method filled");
     check(nekton_method_init(&method) == NEKTON_OK && method.struct_size == sizeof method, "method");
     check(method.max_step == 0 && method.first_step == 0 && old.relative == method.relative, "the defaults");
-    check(nekton_sim_create(model, &method, &sim, &diag) == NEKTON_OK, told(&diag));
-    check(nekton_sim_create(model, (const nekton_method *)(const void *)&old, &old_sim, &diag) == NEKTON_OK, told(&diag));
+    EXPECT(nekton_sim_create(model, &method, &sim, &diag), NEKTON_OK, "ok");
+    EXPECT(nekton_sim_create(model, (const nekton_method *)(const void *)&old, &old_sim, &diag), NEKTON_OK, "ok");
     real q[2][6];
     check(nekton_sim_advance(sim, (real)0.5, &diag) == NEKTON_OK && nekton_sim_positions(sim, q[0], 6) == NEKTON_OK, "new");
     check(nekton_sim_advance(old_sim, (real)0.5, &diag) == NEKTON_OK && nekton_sim_positions(old_sim, q[1], 6) == NEKTON_OK, "old");
@@ -93,26 +97,26 @@ int main(void) {
     method.relative = method.absolute = (real)1e-3;
     nekton_counters counters;
     real t;
-    check(nekton_sim_create(model, &method, &sim, &diag) == NEKTON_OK, told(&diag));
+    EXPECT(nekton_sim_create(model, &method, &sim, &diag), NEKTON_OK, "ok");
     check(nekton_sim_step(sim, &diag) == NEKTON_OK && nekton_sim_time(sim, &t) == NEKTON_OK && t == method.first_step, "first_step");
-    check(nekton_sim_advance(sim, 1, &diag) == NEKTON_OK && nekton_sim_counters(sim, &counters) == NEKTON_OK, told(&diag));
+    EXPECT(nekton_sim_advance(sim, 1, &diag), NEKTON_OK, "ok");
+    check(nekton_sim_counters(sim, &counters) == NEKTON_OK, "counters");
     check(counters.steps >= 33, "max_step");
     check(nekton_sim_free(sim) == NEKTON_OK, "freed");
     method.kind = NEKTON_METHOD_RK4;
     method.step = (real)0.01;
-    check(nekton_sim_create(model, &method, &sim, &diag) == NEKTON_E_OUT_OF_RANGE, told(&diag));
-    check(strstr(text, "max_step with a fixed step") != NULL, "it says which field does not fit");
+    EXPECT(nekton_sim_create(model, &method, &sim, &diag), NEKTON_E_OUT_OF_RANGE, "max_step with a fixed step");
 
     /* As before there was a size: a method by its fields alone, and one that is all zero. */
     nekton_method zero;
     memset(&zero, 0, sizeof zero);
-    check(nekton_sim_create(model, &zero, &sim, &diag) == NEKTON_E_ABI_VERSION && strstr(told(&diag), "method_init"), text);
+    EXPECT(nekton_sim_create(model, &zero, &sim, &diag), NEKTON_E_ABI_VERSION, "method_init");
     zero.struct_size = NEKTON_METHOD_RK4;
-    check(nekton_sim_create(model, &zero, &sim, &diag) == NEKTON_E_ABI_VERSION && diag.value == 1.0, told(&diag));
+    EXPECT(nekton_sim_create(model, &zero, &sim, &diag), NEKTON_E_ABI_VERSION, "struct_size = 1)");
     /* A program of the first version. */
     check(nekton_scene_def_init(&scene, sizeof scene, 1) == NEKTON_E_ABI_VERSION, "version 1");
     scene.abi_version = 1;
-    check(nekton_model_create(&scene, &none, &diag) == NEKTON_E_ABI_VERSION && strstr(told(&diag), "abi_version = 1"), text);
+    EXPECT(nekton_model_create(&scene, &none, &diag), NEKTON_E_ABI_VERSION, "abi_version = 1)");
     check(nekton_model_free(model) == NEKTON_OK, "freed");
     return 0;
 }
