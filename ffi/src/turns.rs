@@ -1,11 +1,14 @@
 //! Who uses a simulation just now: one call that may write, or any number that only read. Nobody waits; who comes in between is
 //! refused. Without atomic operations (as on a Cortex-M0) nothing is noticed, and the rule is the caller's duty alone.
 
-use crate::diag::{Fault, Outcome};
-use nekton::Status;
+use crate::diag::Outcome;
 
 #[cfg(target_has_atomic = "ptr")]
-use core::sync::atomic::{AtomicUsize, Ordering};
+use {
+    crate::diag::Fault,
+    core::sync::atomic::{AtomicUsize, Ordering},
+    nekton::Status,
+};
 
 /// The number of readers, or [`WRITER`].
 pub(crate) struct Turns {
@@ -21,6 +24,7 @@ pub(crate) struct Turn<'a> {
     turns: &'a Turns,
 }
 
+#[cfg(target_has_atomic = "ptr")]
 fn busy<T>() -> Outcome<T> {
     Err(Fault::of(Status::Busy, "sim", f64::NAN))
 }
