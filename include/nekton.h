@@ -86,7 +86,7 @@ enum {
     NEKTON_E_NON_FINITE_STATE = -16,
     /** the step is too small for the tolerance asked for or for the digits of the time */
     NEKTON_E_STEP_TOO_SMALL = -17,
-    /** more steps were needed than allowed */
+    /** more steps are needed than one call may make: lengthen the step, loosen the tolerance or raise the step limit */
     NEKTON_E_TOO_MANY_STEPS = -18,
     /** the step must be positive and finite */
     NEKTON_E_BAD_STEP = -19,
@@ -117,7 +117,9 @@ enum {
     /** another thread uses this simulation */
     NEKTON_E_BUSY = -32,
     /** these bytes are no state that was saved of this model by this version */
-    NEKTON_E_BAD_SAVE = -33
+    NEKTON_E_BAD_SAVE = -33,
+    /** the time asked for lies before the present time */
+    NEKTON_E_PAST_TIME = -34
 };
 
 /** Not set: refused. */
