@@ -286,6 +286,8 @@ typedef struct nekton_diag {
     int32_t item;
     /** The offending value; NaN: none. */
     double value;
+    /** What the value had to keep to (steps that are allowed, the present time); NaN: none. */
+    double limit;
     /** Simulated time that was reached before the error, s; NaN where there is none. */
     double time;
     /** Name of the offending quantity; empty: none. */
@@ -683,8 +685,8 @@ const char *nekton_status_text(nekton_status status);
 const char *nekton_status_name(nekton_status status);
 
 /**
- * Writes "place: text (with other) (what = value) at t = time" into text (size bytes, ended by 0, cut off if too long; 160 are
- * enough). Does nothing when diag or text is NULL or size is 0. Any thread.
+ * Writes "place: text (with other) (what = value beside limit) at t = time" into text (size bytes, ended by 0, cut off if too
+ * long; 256 are enough). Does nothing when diag or text is NULL or size is 0. Any thread.
  */
 void nekton_diag_text(const struct nekton_diag *diag,
                       char *text,
@@ -919,8 +921,8 @@ nekton_status nekton_sim_step(struct nekton_sim *sim,
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton_sim_step,
  * with the largest error met.
- * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
- * nekton_sim_set_step_limit). The steps made until then are kept: the state shown is that of the last good step
+ * Errors: as nekton_sim_step, and PAST_TIME (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton_sim_set_step_limit; of fixed steps at once, with how many it takes and how many are allowed). The steps made until then are kept: the state shown is that of the last good step
  * (nekton_sim_time and diag->time tell when), and the simulation may go on, as if it had been asked to come this far.
  * If no step was good, it is as it was before the call, bit for bit. To get back further, copy before you advance
  * (nekton_sim_copy). One thread per simulation.
@@ -932,7 +934,7 @@ nekton_status nekton_sim_advance(struct nekton_sim *sim,
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance
  * when output is wanted at many times: ADAMS keeps its steps and interpolates.
- * Errors: as nekton_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+ * Errors: as nekton_sim_advance; PAST_TIME also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
                                        double t_out,

@@ -547,8 +547,8 @@ nekton_status nekton32_sim_step(struct nekton32_sim *sim,
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton32_sim_step,
  * with the largest error met.
- * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
- * nekton32_sim_set_step_limit). The steps made until then are kept: the state shown is that of the last good step
+ * Errors: as nekton32_sim_step, and PAST_TIME (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton32_sim_set_step_limit; of fixed steps at once, with how many it takes and how many are allowed). The steps made until then are kept: the state shown is that of the last good step
  * (nekton32_sim_time and diag->time tell when), and the simulation may go on, as if it had been asked to come this far.
  * If no step was good, it is as it was before the call, bit for bit. To get back further, copy before you advance
  * (nekton32_sim_copy). One thread per simulation.
@@ -560,7 +560,7 @@ nekton_status nekton32_sim_advance(struct nekton32_sim *sim,
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
  * when output is wanted at many times: ADAMS keeps its steps and interpolates.
- * Errors: as nekton32_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+ * Errors: as nekton32_sim_advance; PAST_TIME also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
                                          float t_out,

@@ -146,10 +146,13 @@ classdef Nekton < handle
                 nekton_mex('advance', self.id, t_end);
                 return
             end
-            if ~(isnumeric(t_end) && isscalar(t_end) && isreal(t_end) && isfinite(t_end) && t_end >= self.time())
-                error('nekton:sim:BadStep', 'advance: the time must be finite and not before the present one');
+            if ~(isnumeric(t_end) && isscalar(t_end) && isreal(t_end) && isfinite(t_end))
+                error('nekton:arg:finite', 'advance: the time must be a finite number');
             end
             t = self.time();
+            if t_end < t
+                error('nekton:sim:PastTime', 'advance: %g lies before the present time %g', t_end, t);
+            end
             while t < t_end
                 n = floor(t / self.controlStep * (1 + 4 * eps)) + 1;
                 next = n * self.controlStep;

@@ -40,8 +40,8 @@ pub extern "C" fn nekton_status_name(status: nekton_status) -> *const c_char {
     Status::from_code(status).map_or("Unknown\0", Status::name_with_nul).as_ptr().cast()
 }
 
-/// Writes "place: text (with other) (what = value) at t = time" into text (size bytes, ended by 0, cut off if too long; 160 are
-/// enough). Does nothing when diag or text is NULL or size is 0. Any thread.
+/// Writes "place: text (with other) (what = value beside limit) at t = time" into text (size bytes, ended by 0, cut off if too
+/// long; 256 are enough). Does nothing when diag or text is NULL or size is 0. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_diag_text(diag: *const nekton_diag, text: *mut c_char, size: usize) {
     if diag.is_null() || !diag.is_aligned() || text.is_null() || size == 0 || size > isize::MAX as usize {

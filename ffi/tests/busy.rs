@@ -101,7 +101,7 @@ fn a_simulation_that_steps_is_refused_to_other_threads_and_is_none_the_worse() {
                 while refused.is_empty() && !over_yet.load(Ordering::Acquire) {
                     // A call that does nothing either way finds out whether the other thread is at it.
                     let status = unsafe { sim_advance(sim, -1.0, null_mut()) };
-                    assert!(status == BUSY || status == Status::BadStep.code(), "{status}");
+                    assert!(status == BUSY || status == Status::PastTime.code(), "{status}");
                     if status == BUSY {
                         refused = unsafe { uses(sim, other, n) };
                     }
@@ -158,7 +158,7 @@ fn a_call_that_failed_leaves_the_simulation_free() {
         let p = x.as_mut_ptr();
         unsafe {
             for (status, expected) in [
-                (sim_advance(sim, -1.0, null_mut()), Status::BadStep),
+                (sim_advance(sim, -1.0, null_mut()), Status::PastTime),
                 (sim_positions(sim, p, 1), Status::Length),
                 (sim_positions(sim, null_mut(), 9), Status::NullPointer),
                 (sim_rhs(sim, 0.0, p, p, n, null_mut()), Status::Aliasing),
@@ -173,6 +173,7 @@ fn a_call_that_failed_leaves_the_simulation_free() {
             }
             assert_eq!(sim_set_step_limit(sim, 2), 0);
             assert_eq!(sim_advance(sim, 1.0, null_mut()), Status::TooManySteps.code());
+            assert_eq!(sim_set_step_limit(sim, 9), 0);
             assert_eq!(sim_step(sim, null_mut()), 0);
         }
     });

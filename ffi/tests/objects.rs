@@ -189,11 +189,11 @@ fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
         let mut y = before.0.1.clone();
         y[0] = 2.0;
         unsafe {
-            assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::PastTime.code());
             assert_eq!(sim_set_step_limit(sim, 0), Status::OutOfRange.code());
             assert_eq!(sim_advance(sim, nan, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_advance(sim, f64::INFINITY, &mut diag), Status::NotFinite.code());
-            assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::PastTime.code());
             assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n, &mut diag), Status::Contact.code());
             assert_eq!(sim_set_state(sim, nan, y.as_ptr(), n, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n - 1, &mut diag), Status::Length.code());
@@ -270,24 +270,30 @@ fn an_advance_that_fails_keeps_the_steps_that_it_made_and_a_step_that_fails_noth
 fn an_advance_cut_off_by_the_limit_of_steps_goes_on_as_if_it_had_not_been() {
     with_scene(|def, _, _| {
         let (_model_memory, model) = compile(def);
-        for method in every_method() {
-            let (_a, whole) = simulate(model, &method);
-            let (_b, parts) = simulate(model, &method);
-            let mut diag = empty_diag();
-            let mut cut = 0;
-            unsafe {
-                assert_eq!(sim_advance(whole, 0.2, null_mut()), 0);
-                assert_eq!(sim_set_step_limit(parts, 3), 0);
-                let mut last = 0.0;
-                while sim_advance(parts, 0.2, &mut diag) != 0 {
-                    assert_eq!(diag.status, Status::TooManySteps.code());
-                    assert!(diag.time > last && diag.time < 0.2 && cut < 100, "{diag:?}");
-                    assert_eq!(state(model, parts).0, diag.time);
-                    (last, cut) = (diag.time, cut + 1);
-                }
+        // How many steps the variable-step method takes is not known before.
+        let (_a, whole) = simulate(model, &adams());
+        let (_b, parts) = simulate(model, &adams());
+        let (mut diag, mut cut, mut last) = (empty_diag(), 0, 0.0);
+        unsafe {
+            assert_eq!(sim_advance(whole, 0.2, null_mut()), 0);
+            assert_eq!(sim_set_step_limit(parts, 3), 0);
+            while sim_advance(parts, 0.2, &mut diag) != 0 {
+                assert_eq!(diag.status, Status::TooManySteps.code());
+                assert!(diag.time > last && diag.time < 0.2 && cut < 100, "{diag:?}");
+                assert_eq!(state(model, parts).0, diag.time);
+                (last, cut) = (diag.time, cut + 1);
             }
-            assert!(cut > 0);
-            assert_eq!(shown(model, parts), shown(model, whole));
+        }
+        assert!(cut > 0);
+        assert_eq!(shown(model, parts), shown(model, whole));
+        // Of fixed steps it is: nothing is begun that would not be finished, and both numbers are told.
+        for method in &every_method()[..3] {
+            let (_memory, sim) = simulate(model, method);
+            unsafe {
+                assert_eq!(sim_set_step_limit(sim, 3), 0);
+                assert_eq!(sim_advance(sim, 0.2, &mut diag), Status::TooManySteps.code());
+                assert_eq!((diag.value, diag.limit, diag.time, state(model, sim).0), (20.0, 3.0, 0.0, 0.0));
+            }
         }
     });
 }
@@ -348,8 +354,8 @@ fn objects_from_the_heap_work_and_are_freed() {
 #[test]
 fn texts_say_what_where_and_which_value() {
     let text = |diag: &nekton_diag| {
-        let mut buffer = [1u8; 200];
-        unsafe { nekton_ffi::shared::nekton_diag_text(diag, buffer.as_mut_ptr().cast(), 200) };
+        let mut buffer = [1u8; 256];
+        unsafe { nekton_ffi::shared::nekton_diag_text(diag, buffer.as_mut_ptr().cast(), 256) };
         String::from_utf8(buffer.iter().copied().take_while(|b| *b != 0).collect()).unwrap()
     };
     with_scene(|def, _, links| {
@@ -373,6 +379,18 @@ fn texts_say_what_where_and_which_value() {
         for value in [f64::MAX, f64::MIN_POSITIVE, 5e-324, 0.0, -0.0] {
             diag.value = value;
             text(&diag);
+        }
+    });
+    with_scene(|def, _, _| {
+        let (_model_memory, model) = compile(def);
+        let (_memory, sim) = simulate(model, &fixed(NEKTON_METHOD_RK4));
+        let mut diag = empty_diag();
+        unsafe {
+            assert_eq!(sim_advance(sim, 1e6, &mut diag), Status::TooManySteps.code());
+            assert!(text(&diag).ends_with(" (steps = 1.00000e8 beside 1.00000e6) at t = 0"), "{}", text(&diag));
+            assert_eq!(sim_advance(sim, 0.5, &mut diag), 0);
+            assert_eq!(sim_advance(sim, 0.25, &mut diag), Status::PastTime.code());
+            assert!(text(&diag).ends_with(" (t = 2.50000e-1 beside 5.00000e-1) at t = 5.00000e-1"), "{}", text(&diag));
         }
     });
     for status in Status::ALL {

@@ -63,7 +63,7 @@ raises('nekton:arg:class', @() sim.advance('x'));
 raises('nekton:arg:size', @() sim.advance([1 2]));
 raises('nekton:arg:finite', @() sim.advance(NaN));
 raises('nekton:arg:finite', @() sim.advance(Inf));
-raises('nekton:sim:BadStep', @() sim.advance(0.4));
+raises('nekton:sim:PastTime', @() sim.advance(0.4));
 raises('nekton:arg:size', @() sim.rhs(0, [1 2 3]));
 raises('nekton:arg:class', @() sim.rhs(0, single(y)));
 raises('nekton:arg:finite', @() sim.rhs(0, y * NaN));

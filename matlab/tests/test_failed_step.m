@@ -5,7 +5,7 @@ scene = struct('fluid', struct('density', 0), 'body', [disc(-1, 1), disc(1, -1)]
 sim = Nekton(scene);
 sim.advance(0.3);
 [y, t] = sim.state();
-raises('nekton:sim:BadStep', @() sim.advance(0.2));
+raises('nekton:sim:PastTime', @() sim.advance(0.2));
 [y1, t1] = sim.state();
 assert(isequal(y, y1) && t == t1);
 sim = Nekton(scene, 'method', 'rk4', 'step', 0.01);

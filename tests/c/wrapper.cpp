@@ -69,7 +69,7 @@ template <class R> int run()
     R two[2];
 #ifdef NEKTON_NO_EXCEPTIONS
     CHECK(moved.positions(two) == NEKTON_E_LENGTH);
-    CHECK(moved.advance(R(0), &diag) == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP);
+    CHECK(moved.advance(R(0), &diag) == NEKTON_E_PAST_TIME && diag.status == NEKTON_E_PAST_TIME);
     CHECK(moved.rhs(R(0), two, q, &diag) == NEKTON_E_LENGTH);
     link.nodes = 7;
     nekton::BasicModel<R> refused(scene, &diag);
@@ -84,7 +84,7 @@ template <class R> int run()
     try {
         moved.advance(R(0), &diag);
     } catch (const nekton::Error &error) {
-        caught += error.status() == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP;
+        caught += error.status() == NEKTON_E_PAST_TIME && diag.status == NEKTON_E_PAST_TIME;
     }
     try {
         moved.rhs(R(0), two, q);

@@ -17,7 +17,16 @@ pub fn what(diag: &nekton_diag) -> String {
 
 pub fn empty_diag() -> nekton_diag {
     let nowhere = nekton_place { kind: -7, index: -7, link: -7 };
-    nekton_diag { status: 77, place: nowhere, other: nowhere, item: -7, value: 0.0, time: 0.0, what: [1; 32] }
+    nekton_diag {
+        status: 77,
+        place: nowhere,
+        other: nowhere,
+        item: -7,
+        value: 0.0,
+        limit: 0.0,
+        time: 0.0,
+        what: [1; 32],
+    }
 }
 
 /// A struct after a function that fills it.
