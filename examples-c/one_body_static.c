@@ -33,7 +33,7 @@ int main(void)
     nekton_scene_def scene;
     nekton_body_def body;
     nekton_link_def link;
-    nekton_method method = {NEKTON_METHOD_RK4, 0.01, 0.0, 0.0};
+    nekton_method method;
     nekton_model *model = NULL;
     nekton_sim *sim = NULL;
     nekton_diag diag;
@@ -60,6 +60,9 @@ int main(void)
 
     if (nekton_model_init(&model_memory, sizeof model_memory, &scene, &model, &diag) < 0)
         return failed(&diag);
+    nekton_method_init(&method);
+    method.kind = NEKTON_METHOD_RK4;
+    method.step = 0.01;
     if (nekton_sim_init(&sim_memory, sizeof sim_memory, model, &method, &sim, &diag) < 0)
         return failed(&diag);
     for (i = 1; i <= 10; i++) {

@@ -49,7 +49,7 @@ int main(void)
     nekton_body_def body;
     nekton_link_def link;
     /* The simulation's own method is only used for comparison. */
-    nekton_method method = {NEKTON_METHOD_RK4, 0.05, 0.0, 0.0};
+    nekton_method method;
     nekton_model *model = NULL;
     nekton_sim *sim = NULL;
     nekton_plan plan;
@@ -87,6 +87,9 @@ int main(void)
 
     if (nekton_model_create(&scene, &model, &diag) < 0)
         return failed(&diag);
+    nekton_method_init(&method);
+    method.kind = NEKTON_METHOD_RK4;
+    method.step = 0.05;
     if (nekton_sim_create(model, &method, &sim, &diag) < 0)
         return failed(&diag);
     nekton_model_plan(model, &plan);

@@ -24,10 +24,12 @@ typedef struct rollout {
 static void *run(void *argument)
 {
     rollout *r = (rollout *)argument;
-    nekton_method method = {NEKTON_METHOD_ADAMS, 0.0, 1e-7, 1e-7};
+    nekton_method method;
     nekton_sim *sim = NULL;
     double from[4] = {0.0, 0.0, 0.0, 0.0}, to[4] = {0.5, 0.0, 0.0, 0.0};
     from[1] = to[1] = r->torque;
+    nekton_method_init(&method);
+    method.relative = method.absolute = 1e-7; /* of ADAMS, the default */
     r->status = nekton_sim_create(r->model, &method, &sim, &r->diag);
     if (r->status >= 0)
         r->status = nekton_sim_set_channel(sim, 0, from, to, &r->diag);

@@ -24,7 +24,7 @@ int main(void)
     nekton_link_def links[3];
     /* amplitude, frequency, phase, offset */
     nekton_harmonic front = {-1.0, 1.0, 1.5707963267948966, 0.0}, rear = {1.0, 1.0, 0.0, 0.0};
-    nekton_method method = {NEKTON_METHOD_ADAMS, 0.0, 1e-8, 1e-8};
+    nekton_method method;
     nekton_model *model = NULL;
     nekton_sim *sim = NULL;
     nekton_diag diag;
@@ -64,6 +64,8 @@ int main(void)
 
     if (nekton_model_create(&scene, &model, &diag) < 0)
         return failed(&diag);
+    nekton_method_init(&method);
+    method.relative = method.absolute = 1e-8; /* of ADAMS, the default */
     if (nekton_sim_create(model, &method, &sim, &diag) < 0)
         return failed(&diag);
     for (i = 1; i <= 8; i++) {

@@ -21,7 +21,7 @@ int main(void)
     nekton_scene_def scene;
     nekton_body_def bodies[2];
     nekton_link_def link;
-    nekton_method method = {NEKTON_METHOD_ADAMS, 0.0, 1e-9, 1e-9};
+    nekton_method method;
     nekton_model *model = NULL;
     nekton_sim *sim = NULL;
     nekton_diag diag;
@@ -51,6 +51,8 @@ int main(void)
 
     if (nekton_model_create(&scene, &model, &diag) < 0)
         return failed(&diag);
+    nekton_method_init(&method);
+    method.relative = method.absolute = 1e-9; /* of ADAMS, the default */
     if (nekton_sim_create(model, &method, &sim, &diag) < 0)
         return failed(&diag);
     for (i = 1; i <= 8; i++) {

@@ -16,7 +16,7 @@ int main(void)
     nekton_diag diag;
     nekton_model *model = NULL;
     nekton_plan plan;
-    nekton_method method = {NEKTON_METHOD_ADAMS, 0.0, 1e-8, 1e-8};
+    nekton_method method;
     nekton_sim *sim = NULL;
     nekton_resolution resolution;
     char text[160];
@@ -77,6 +77,8 @@ int main(void)
             (unsigned long)plan.sim_bytes);
 
     /* Are 48 nodes enough? Relative errors of space, estimated at the present state. */
+    nekton_method_init(&method);
+    method.relative = method.absolute = 1e-8; /* of ADAMS, the default */
     if (nekton_sim_create(model, &method, &sim, &diag) < 0 || nekton_sim_resolution(sim, &resolution, &diag) < 0)
         return 1;
     printf("resolution %.17g %.17g\n", resolution.mass, resolution.force);

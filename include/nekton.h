@@ -10,15 +10,25 @@
  * Units are SI per unit depth: lengths m, density kg/m^3 (so mass kg/m, inertia kg m), circulation m^2/s, torque N, force N/m,
  * energy J/m. Angles are radians, counter-clockwise. Matrices are column-major.
  *
+ * Definitions (nekton_scene_def, nekton_body_def, nekton_link_def, nekton_wall_def, nekton_method) are filled by the function with
+ * init in its name first, which also says how large they are (struct_size); those of one array have the same size. Later versions
+ * of the library append fields, for which 0 means none, so that a program and a library of different age get along: what an
+ * older program does not know is none; a newer one is refused (UNSUPPORTED) only if it sets what the library does not know. What lies
+ * within definitions (shapes, signals), and what functions fill, keeps its size.
+ *
  * Errors: every function returns a nekton_status: 0 ok, > 0 a notice (it was done), < 0 an error. A call that fails leaves
- * every simulation bit for bit as it was; outputs are then of no use. Where a function takes a nekton_diag (NULL is fine) it
- * says what, where, and which value. In the comments, BAD_HANDLE stands for NEKTON_E_BAD_HANDLE, and so on. A non-finite number
- * is never accepted and never returned as ok (only the distance of a gap may be infinite).
+ * every simulation bit for bit as it was; outputs are then of no use. Only nekton_sim_advance and nekton_sim_advance_dense keep the
+ * steps that they made before the error: an hour of work is not rolled back for one step. Where a function takes a nekton_diag
+ * (NULL is fine) it says what, where, and which value. In the comments, BAD_HANDLE stands for NEKTON_E_BAD_HANDLE, and so on. A
+ * non-finite number is never accepted and never returned as ok (only the distance of a gap may be infinite).
  *
  * Objects are recognized by a mark; handles to memory that was overwritten, freed twice or unmapped are the caller's duty.
  *
  * Threads: no global and no thread-local variable, no lock, no input or output. A model may be used by any number of threads at
- * once; a simulation by one at a time, even to read it. Only create and free use the heap.
+ * once; a simulation by one at a time, even to read it. Whoever comes while another call uses it is refused at once (BUSY, from
+ * every function of a simulation, interrupts included) and nothing changes; nobody waits. Any number of threads may copy from one
+ * simulation at once (nekton_sim_copy, its from). Without atomic operations (Cortex-M0) BUSY is not noticed. Only create and
+ * free use the heap.
  */
 #ifndef NEKTON_H
 #define NEKTON_H
@@ -38,6 +48,10 @@ enum {
     NEKTON_N_UNRESOLVED = 2,
     /** the step is too long for the motion: its error is a tenth of a body or more */
     NEKTON_N_STEP_TOO_LONG = 3,
+    /** the step is too long for what a drive does within it */
+    NEKTON_N_DRIVE_UNRESOLVED = 4,
+    /** energy and the work of the drives do not balance */
+    NEKTON_N_ENERGY_DRIFT = 5,
     /** the memory given is smaller than required */
     NEKTON_E_MEMORY_TOO_SMALL = -1,
     /** a value is not finite */
@@ -72,7 +86,7 @@ enum {
     NEKTON_E_NON_FINITE_STATE = -16,
     /** the step is too small for the tolerance asked for or for the digits of the time */
     NEKTON_E_STEP_TOO_SMALL = -17,
-    /** more steps were needed than allowed */
+    /** more steps are needed than one call may make: lengthen the step, loosen the tolerance or raise the step limit */
     NEKTON_E_TOO_MANY_STEPS = -18,
     /** the step must be positive and finite */
     NEKTON_E_BAD_STEP = -19,
@@ -88,7 +102,7 @@ enum {
     NEKTON_E_NULL_POINTER = -24,
     /** memory is not aligned as required */
     NEKTON_E_MISALIGNED = -25,
-    /** the caller was compiled for another version of the interface */
+    /** not initialized, or compiled for another version of the interface */
     NEKTON_E_ABI_VERSION = -26,
     /** this is no object of this library: not initialized, freed, or its model was replaced */
     NEKTON_E_BAD_HANDLE = -27,
@@ -99,7 +113,13 @@ enum {
     /** two buffers overlap that must not */
     NEKTON_E_ALIASING = -30,
     /** the equations of an implicit step were not solved: the step is too long */
-    NEKTON_E_NO_CONVERGENCE = -31
+    NEKTON_E_NO_CONVERGENCE = -31,
+    /** another thread uses this simulation */
+    NEKTON_E_BUSY = -32,
+    /** these bytes are no state that was saved of this model by this version */
+    NEKTON_E_BAD_SAVE = -33,
+    /** the time asked for lies before the present time */
+    NEKTON_E_PAST_TIME = -34
 };
 
 /** Not set: refused. */
@@ -223,8 +243,11 @@ enum {
 /** A lone swimmer: conserved impulse, first order in time. */
 #define NEKTON_FORMULATION_LOCKED_MOMENTUM 2
 
-/** Version of the interface. Goes up with every change that is not compatible. */
-#define NEKTON_ABI_VERSION 1
+/**
+ * Version of the interface. Goes up with every change that is not compatible; fields appended to a definition are
+ * compatible, by its struct_size.
+ */
+#define NEKTON_ABI_VERSION 2
 
 /** Capability: nekton_model_create, nekton_sim_create and their free work. */
 #define NEKTON_CAP_ALLOC 1
@@ -263,6 +286,8 @@ typedef struct nekton_diag {
     int32_t item;
     /** The offending value; NaN: none. */
     double value;
+    /** What the value had to keep to (steps that are allowed, the present time); NaN: none. */
+    double limit;
     /** Simulated time that was reached before the error, s; NaN where there is none. */
     double time;
     /** Name of the offending quantity; empty: none. */
@@ -298,16 +323,18 @@ typedef struct nekton_shape {
     size_t point_count;
 } nekton_shape;
 
-/** A fixed boundary: the tank or an obstacle. */
+/** A fixed boundary: the tank or an obstacle. To be filled by nekton_wall_def_init first. */
 typedef struct nekton_wall_def {
+    /** sizeof of this struct; set by nekton_wall_def_init. */
+    uint32_t struct_size;
     /** Outline. */
     struct nekton_shape shape;
     /** Where the outline's own origin lies, m. */
     double position[2];
-    /** Turn about the outline's own origin, rad. */
-    double angle;
     /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
+    /** Turn about the outline's own origin, rad. */
+    double angle;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     double circulation;
 } nekton_wall_def;
@@ -352,8 +379,10 @@ typedef struct nekton_signal {
     size_t row_count;
 } nekton_signal;
 
-/** One rigid part of a body, with the joint by which it hangs on its parent. */
+/** One rigid part of a body, with the joint by which it hangs on its parent. To be filled by nekton_link_def_init first. */
 typedef struct nekton_link_def {
+    /** sizeof of this struct; set by nekton_link_def_init. */
+    uint32_t struct_size;
     /** Outline, drawn in the link's own frame (any origin). */
     struct nekton_shape shape;
     /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
@@ -386,26 +415,28 @@ typedef struct nekton_link_def {
     double angle;
     /** Locked: the value of u, rad (slider: m). */
     double locked_value;
+    /** Torque: u of the unloaded spring. */
+    double rest;
     /** Motion: u(t). Torque: the applied torque, N (slider: force, N/m). */
     struct nekton_signal signal;
     /** Torque: spring constant, >= 0. */
     double stiffness;
     /** Torque: damping constant, >= 0. */
     double damping;
-    /** Torque: u of the unloaded spring. */
-    double rest;
     /** Torque: u and du/dt at the start. */
     double start[2];
 } nekton_link_def;
 
-/** A body: a tree of links, of which the first is the root. */
+/** A body: a tree of links, of which the first is the root. To be filled by nekton_body_def_init first. */
 typedef struct nekton_body_def {
+    /** sizeof of this struct; set by nekton_body_def_init. */
+    uint32_t struct_size;
+    /** NEKTON_ROOT_... */
+    int32_t root;
     /** x, y, theta: centre of mass and heading of the first link. */
     double pose[3];
     /** Their rates. */
     double velocity[3];
-    /** NEKTON_ROOT_... */
-    int32_t root;
     /** Prescribed root: x(t), y(t), theta(t). */
     struct nekton_signal motion[3];
     /** Links; the first has no parent, every other one a parent before it. */
@@ -452,6 +483,24 @@ typedef struct nekton_scene_def {
     /** Number of bodies, >= 1. */
     size_t body_count;
 } nekton_scene_def;
+
+/** How a simulation is integrated in time. To be filled by nekton_method_init first. */
+typedef struct nekton_method {
+    /** sizeof of this struct; set by nekton_method_init. */
+    uint32_t struct_size;
+    /** NEKTON_METHOD_... */
+    int32_t kind;
+    /** RK4, ABM4, GAUSS6: step, s. */
+    double step;
+    /** ADAMS: relative tolerance of each step. */
+    double relative;
+    /** ADAMS: absolute tolerance of each step. */
+    double absolute;
+    /** ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps. */
+    double max_step;
+    /** ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps. */
+    double first_step;
+} nekton_method;
 
 /** Memory that an object needs. */
 typedef struct nekton_req {
@@ -533,18 +582,6 @@ typedef struct nekton_joint_info {
     int32_t prescribed;
 } nekton_joint_info;
 
-/** How a simulation is integrated in time. */
-typedef struct nekton_method {
-    /** NEKTON_METHOD_... */
-    int32_t kind;
-    /** RK4, ABM4, GAUSS6: step, s. */
-    double step;
-    /** ADAMS: relative tolerance of each step. */
-    double relative;
-    /** ADAMS: absolute tolerance of each step. */
-    double absolute;
-} nekton_method;
-
 /** Energies, J/m. */
 typedef struct nekton_energy {
     /** Kinetic energy of the fluid moved by the bodies. */
@@ -616,7 +653,7 @@ typedef struct nekton_gap {
     struct nekton_place second;
 } nekton_gap;
 
-/** What a simulation did since its start. Calls that failed count nothing. */
+/** What a simulation did since its start. A call that failed counts nothing but steps that it kept. */
 typedef struct nekton_counters {
     /** Evaluations of the equations of motion. */
     uint64_t evaluations;
@@ -648,8 +685,8 @@ const char *nekton_status_text(nekton_status status);
 const char *nekton_status_name(nekton_status status);
 
 /**
- * Writes "place: text (with other) (what = value) at t = time" into text (size bytes, ended by 0, cut off if too long; 160 are
- * enough). Does nothing when diag or text is NULL or size is 0. Any thread.
+ * Writes "place: text (with other) (what = value beside limit) at t = time" into text (size bytes, ended by 0, cut off if too
+ * long; 256 are enough). Does nothing when diag or text is NULL or size is 0. Any thread.
  */
 void nekton_diag_text(const struct nekton_diag *diag,
                       char *text,
@@ -663,28 +700,41 @@ void nekton_diag_text(const struct nekton_diag *diag,
 nekton_status nekton_scene_def_init(struct nekton_scene_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+ * nekton_wall_def_init(&def): a macro of that name adds size and version.
+ * Errors: as nekton_scene_def_init. Any thread.
  */
-nekton_status nekton_wall_def_init(struct nekton_wall_def *def);
+nekton_status nekton_wall_def_init(struct nekton_wall_def *def,
+                                   size_t struct_size,
+                                   uint32_t abi_version);
 
 /**
- * Fills a body definition with defaults: free, at rest at the origin; the links are still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * Fills a body definition with defaults: free, at rest at the origin; the links are still to be set. Call it as
+ * nekton_body_def_init(&def).
+ * Errors: as nekton_scene_def_init. Any thread.
  */
-nekton_status nekton_body_def_init(struct nekton_body_def *def);
+nekton_status nekton_body_def_init(struct nekton_body_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
  * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
- * locked at 0. The shape is still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * locked at 0. The shape is still to be set. Call it as nekton_link_def_init(&def).
+ * Errors: as nekton_scene_def_init. Any thread.
  */
-nekton_status nekton_link_def_init(struct nekton_link_def *def);
+nekton_status nekton_link_def_init(struct nekton_link_def *def, size_t struct_size, uint32_t abi_version);
+
+/**
+ * Fills a method with defaults: ADAMS, both tolerances 1e-9 (single precision: 1e-4), steps of its own choice. Call it as
+ * nekton_method_init(&method).
+ * Errors: as nekton_scene_def_init. Any thread.
+ */
+nekton_status nekton_method_init(struct nekton_method *def,
+                                 size_t struct_size,
+                                 uint32_t abi_version);
 
 /**
  * Memory that nekton_model_init needs for this scene. Checks everything but geometry.
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
- * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+ * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW, UNSUPPORTED (a field of a newer header is set). Any thread.
  */
 nekton_status nekton_model_req(const struct nekton_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
@@ -760,7 +810,9 @@ nekton_status nekton_model_outline_point(const struct nekton_model *model,
 
 /**
  * Memory that nekton_sim_init needs.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, SIZE_OVERFLOW. Any thread.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, ABI_VERSION (the method was not filled by nekton_method_init),
+ * UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, OUT_OF_RANGE (max_step or first_step with a fixed step), SIZE_OVERFLOW,
+ * UNSUPPORTED. Any thread.
  */
 nekton_status nekton_sim_req(const struct nekton_model *model,
                              const struct nekton_method *method,
@@ -792,17 +844,19 @@ nekton_status nekton_sim_create(const struct nekton_model *model,
 
 /**
  * Frees a simulation from nekton_sim_create (NULL: does nothing).
- * Errors: BAD_HANDLE if it is not from there. Any thread, once.
+ * Errors: BAD_HANDLE if it is not from there; BUSY: it is still there. Any thread, once.
  */
 nekton_status nekton_sim_free(struct nekton_sim *sim);
 
 /**
  * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
  * channels, counters.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
- * from while nobody uses it.
+ * Errors: BAD_HANDLE (also if the models differ), NULL_POINTER, MISALIGNED, BUSY. One thread for to; any number may copy
+ * from from while nobody else uses it.
  */
-nekton_status nekton_sim_copy(struct nekton_sim *to, const struct nekton_sim *from, struct nekton_diag *diag);
+nekton_status nekton_sim_copy(struct nekton_sim *to,
+                              const struct nekton_sim *from,
+                              struct nekton_diag *diag);
 
 /**
  * The simulation's model.
@@ -857,8 +911,8 @@ nekton_status nekton_sim_restart(struct nekton_sim *sim);
  * of the step is a tenth of a body's reach, or of a radian, or more (see nekton_sim_time_error; GAUSS6 has no estimate);
  * UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
  * when, and what is closest.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
- * simulation is then as it was, bit for bit. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
+ * the simulation is then as it was, bit for bit. One thread per simulation.
  */
 nekton_status nekton_sim_step(struct nekton_sim *sim,
                               struct nekton_diag *diag);
@@ -867,9 +921,11 @@ nekton_status nekton_sim_step(struct nekton_sim *sim,
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton_sim_step,
  * with the largest error met.
- * Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
- * nekton_sim_set_step_limit). The simulation is then
- * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+ * Errors: as nekton_sim_step, and PAST_TIME (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton_sim_set_step_limit; of fixed steps at once, with how many it takes and how many are allowed). The steps made until then are kept: the state shown is that of the last good step
+ * (nekton_sim_time and diag->time tell when), and the simulation may go on, as if it had been asked to come this far.
+ * If no step was good, it is as it was before the call, bit for bit. To get back further, copy before you advance
+ * (nekton_sim_copy). One thread per simulation.
  */
 nekton_status nekton_sim_advance(struct nekton_sim *sim,
                                  double t_end,
@@ -878,7 +934,7 @@ nekton_status nekton_sim_advance(struct nekton_sim *sim,
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance
  * when output is wanted at many times: ADAMS keeps its steps and interpolates.
- * Errors: as nekton_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+ * Errors: as nekton_sim_advance; PAST_TIME also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton_sim_advance_dense(struct nekton_sim *sim,
                                        double t_out,
@@ -1133,5 +1189,14 @@ nekton_status nekton_sim_counters(const struct nekton_sim *sim, struct nekton_co
      8 * NEKTON_P_MODEL_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded))
 #define NEKTON_SIM_BYTES(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded) \
     (1024 + 8 * NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded))
+
+/*
+ * Filled by their own size: nekton_link_def_init(&link). What is in the library is the function of the same name, which takes size and
+ * version too: (nekton_link_def_init)(&link, sizeof link, NEKTON_ABI_VERSION), as other languages call it.
+ */
+#define nekton_wall_def_init(def) nekton_wall_def_init((def), sizeof(nekton_wall_def), NEKTON_ABI_VERSION)
+#define nekton_body_def_init(def) nekton_body_def_init((def), sizeof(nekton_body_def), NEKTON_ABI_VERSION)
+#define nekton_link_def_init(def) nekton_link_def_init((def), sizeof(nekton_link_def), NEKTON_ABI_VERSION)
+#define nekton_method_init(def) nekton_method_init((def), sizeof(nekton_method), NEKTON_ABI_VERSION)
 
 #endif /* NEKTON_H */

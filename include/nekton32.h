@@ -44,16 +44,18 @@ typedef struct nekton32_shape {
     size_t point_count;
 } nekton32_shape;
 
-/** A fixed boundary: the tank or an obstacle. */
+/** A fixed boundary: the tank or an obstacle. To be filled by nekton_wall_def_init first. */
 typedef struct nekton32_wall_def {
+    /** sizeof of this struct; set by nekton_wall_def_init. */
+    uint32_t struct_size;
     /** Outline. */
     struct nekton32_shape shape;
     /** Where the outline's own origin lies, m. */
     float position[2];
-    /** Turn about the outline's own origin, rad. */
-    float angle;
     /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
     size_t nodes;
+    /** Turn about the outline's own origin, rad. */
+    float angle;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     float circulation;
 } nekton32_wall_def;
@@ -98,8 +100,10 @@ typedef struct nekton32_signal {
     size_t row_count;
 } nekton32_signal;
 
-/** One rigid part of a body, with the joint by which it hangs on its parent. */
+/** One rigid part of a body, with the joint by which it hangs on its parent. To be filled by nekton_link_def_init first. */
 typedef struct nekton32_link_def {
+    /** sizeof of this struct; set by nekton_link_def_init. */
+    uint32_t struct_size;
     /** Outline, drawn in the link's own frame (any origin). */
     struct nekton32_shape shape;
     /** Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes. */
@@ -132,26 +136,28 @@ typedef struct nekton32_link_def {
     float angle;
     /** Locked: the value of u, rad (slider: m). */
     float locked_value;
+    /** Torque: u of the unloaded spring. */
+    float rest;
     /** Motion: u(t). Torque: the applied torque, N (slider: force, N/m). */
     struct nekton32_signal signal;
     /** Torque: spring constant, >= 0. */
     float stiffness;
     /** Torque: damping constant, >= 0. */
     float damping;
-    /** Torque: u of the unloaded spring. */
-    float rest;
     /** Torque: u and du/dt at the start. */
     float start[2];
 } nekton32_link_def;
 
-/** A body: a tree of links, of which the first is the root. */
+/** A body: a tree of links, of which the first is the root. To be filled by nekton_body_def_init first. */
 typedef struct nekton32_body_def {
+    /** sizeof of this struct; set by nekton_body_def_init. */
+    uint32_t struct_size;
+    /** NEKTON_ROOT_... */
+    int32_t root;
     /** x, y, theta: centre of mass and heading of the first link. */
     float pose[3];
     /** Their rates. */
     float velocity[3];
-    /** NEKTON_ROOT_... */
-    int32_t root;
     /** Prescribed root: x(t), y(t), theta(t). */
     struct nekton32_signal motion[3];
     /** Links; the first has no parent, every other one a parent before it. */
@@ -199,6 +205,24 @@ typedef struct nekton32_scene_def {
     size_t body_count;
 } nekton32_scene_def;
 
+/** How a simulation is integrated in time. To be filled by nekton_method_init first. */
+typedef struct nekton32_method {
+    /** sizeof of this struct; set by nekton_method_init. */
+    uint32_t struct_size;
+    /** NEKTON_METHOD_... */
+    int32_t kind;
+    /** RK4, ABM4, GAUSS6: step, s. */
+    float step;
+    /** ADAMS: relative tolerance of each step. */
+    float relative;
+    /** ADAMS: absolute tolerance of each step. */
+    float absolute;
+    /** ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps. */
+    float max_step;
+    /** ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps. */
+    float first_step;
+} nekton32_method;
+
 /** Facts about a link. */
 typedef struct nekton32_link_info {
     /** Body and link. */
@@ -216,18 +240,6 @@ typedef struct nekton32_link_info {
     /** Area centroid minus centre of mass, link frame, m. */
     float centroid[2];
 } nekton32_link_info;
-
-/** How a simulation is integrated in time. */
-typedef struct nekton32_method {
-    /** NEKTON_METHOD_... */
-    int32_t kind;
-    /** RK4, ABM4, GAUSS6: step, s. */
-    float step;
-    /** ADAMS: relative tolerance of each step. */
-    float relative;
-    /** ADAMS: absolute tolerance of each step. */
-    float absolute;
-} nekton32_method;
 
 /** Energies, J/m. */
 typedef struct nekton32_energy {
@@ -312,28 +324,41 @@ extern "C" {
 nekton_status nekton32_scene_def_init(struct nekton32_scene_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+ * nekton32_wall_def_init(&def): a macro of that name adds size and version.
+ * Errors: as nekton32_scene_def_init. Any thread.
  */
-nekton_status nekton32_wall_def_init(struct nekton32_wall_def *def);
+nekton_status nekton32_wall_def_init(struct nekton32_wall_def *def,
+                                     size_t struct_size,
+                                     uint32_t abi_version);
 
 /**
- * Fills a body definition with defaults: free, at rest at the origin; the links are still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * Fills a body definition with defaults: free, at rest at the origin; the links are still to be set. Call it as
+ * nekton32_body_def_init(&def).
+ * Errors: as nekton32_scene_def_init. Any thread.
  */
-nekton_status nekton32_body_def_init(struct nekton32_body_def *def);
+nekton_status nekton32_body_def_init(struct nekton32_body_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
  * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
- * locked at 0. The shape is still to be set.
- * Errors: NULL_POINTER, MISALIGNED. Any thread.
+ * locked at 0. The shape is still to be set. Call it as nekton32_link_def_init(&def).
+ * Errors: as nekton32_scene_def_init. Any thread.
  */
-nekton_status nekton32_link_def_init(struct nekton32_link_def *def);
+nekton_status nekton32_link_def_init(struct nekton32_link_def *def, size_t struct_size, uint32_t abi_version);
+
+/**
+ * Fills a method with defaults: ADAMS, both tolerances 1e-9 (single precision: 1e-4), steps of its own choice. Call it as
+ * nekton32_method_init(&method).
+ * Errors: as nekton32_scene_def_init. Any thread.
+ */
+nekton_status nekton32_method_init(struct nekton32_method *def,
+                                   size_t struct_size,
+                                   uint32_t abi_version);
 
 /**
  * Memory that nekton32_model_init needs for this scene. Checks everything but geometry.
  * Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
- * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+ * BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW, UNSUPPORTED (a field of a newer header is set). Any thread.
  */
 nekton_status nekton32_model_req(const struct nekton32_scene_def *def, struct nekton_req *req, struct nekton_diag *diag);
 
@@ -411,7 +436,9 @@ nekton_status nekton32_model_outline_point(const struct nekton32_model *model,
 
 /**
  * Memory that nekton32_sim_init needs.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, SIZE_OVERFLOW. Any thread.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, ABI_VERSION (the method was not filled by nekton32_method_init),
+ * UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, OUT_OF_RANGE (max_step or first_step with a fixed step), SIZE_OVERFLOW,
+ * UNSUPPORTED. Any thread.
  */
 nekton_status nekton32_sim_req(const struct nekton32_model *model,
                                const struct nekton32_method *method,
@@ -443,17 +470,19 @@ nekton_status nekton32_sim_create(const struct nekton32_model *model,
 
 /**
  * Frees a simulation from nekton32_sim_create (NULL: does nothing).
- * Errors: BAD_HANDLE if it is not from there. Any thread, once.
+ * Errors: BAD_HANDLE if it is not from there; BUSY: it is still there. Any thread, once.
  */
 nekton_status nekton32_sim_free(struct nekton32_sim *sim);
 
 /**
  * Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
  * channels, counters.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
- * from while nobody uses it.
+ * Errors: BAD_HANDLE (also if the models differ), NULL_POINTER, MISALIGNED, BUSY. One thread for to; any number may copy
+ * from from while nobody else uses it.
  */
-nekton_status nekton32_sim_copy(struct nekton32_sim *to, const struct nekton32_sim *from, struct nekton_diag *diag);
+nekton_status nekton32_sim_copy(struct nekton32_sim *to,
+                                const struct nekton32_sim *from,
+                                struct nekton_diag *diag);
 
 /**
  * The simulation's model.
@@ -508,8 +537,8 @@ nekton_status nekton32_sim_restart(struct nekton32_sim *sim);
  * of the step is a tenth of a body's reach, or of a radian, or more (see nekton32_sim_time_error; GAUSS6 has no estimate);
  * UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
  * when, and what is closest.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
- * simulation is then as it was, bit for bit. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
+ * the simulation is then as it was, bit for bit. One thread per simulation.
  */
 nekton_status nekton32_sim_step(struct nekton32_sim *sim,
                                 struct nekton_diag *diag);
@@ -518,9 +547,11 @@ nekton_status nekton32_sim_step(struct nekton32_sim *sim,
  * Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
  * the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton32_sim_step,
  * with the largest error met.
- * Errors: as nekton32_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
- * nekton32_sim_set_step_limit). The simulation is then
- * as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+ * Errors: as nekton32_sim_step, and PAST_TIME (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+ * nekton32_sim_set_step_limit; of fixed steps at once, with how many it takes and how many are allowed). The steps made until then are kept: the state shown is that of the last good step
+ * (nekton32_sim_time and diag->time tell when), and the simulation may go on, as if it had been asked to come this far.
+ * If no step was good, it is as it was before the call, bit for bit. To get back further, copy before you advance
+ * (nekton32_sim_copy). One thread per simulation.
  */
 nekton_status nekton32_sim_advance(struct nekton32_sim *sim,
                                    float t_end,
@@ -529,7 +560,7 @@ nekton_status nekton32_sim_advance(struct nekton32_sim *sim,
 /**
  * Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton32_sim_advance
  * when output is wanted at many times: ADAMS keeps its steps and interpolates.
- * Errors: as nekton32_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+ * Errors: as nekton32_sim_advance; PAST_TIME also if t_out > t_stop. One thread per simulation.
  */
 nekton_status nekton32_sim_advance_dense(struct nekton32_sim *sim,
                                          float t_out,
@@ -722,5 +753,11 @@ nekton_status nekton32_sim_counters(const struct nekton32_sim *sim, struct nekto
      4 * NEKTON_P_MODEL_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded))
 #define NEKTON32_SIM_BYTES(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded) \
     (1024 + 4 * NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded))
+
+/* Filled by their own size, as in nekton.h. */
+#define nekton32_wall_def_init(def) nekton32_wall_def_init((def), sizeof(nekton32_wall_def), NEKTON_ABI_VERSION)
+#define nekton32_body_def_init(def) nekton32_body_def_init((def), sizeof(nekton32_body_def), NEKTON_ABI_VERSION)
+#define nekton32_link_def_init(def) nekton32_link_def_init((def), sizeof(nekton32_link_def), NEKTON_ABI_VERSION)
+#define nekton32_method_init(def) nekton32_method_init((def), sizeof(nekton32_method), NEKTON_ABI_VERSION)
 
 #endif /* NEKTON32_H */

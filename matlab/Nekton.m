@@ -8,6 +8,8 @@ classdef Nekton < handle
 %                     implicit, for long runs: the energy does not drift)
 %     'tolerance'     of 'adams', relative and absolute (default: the scene's, else 1e-9)
 %     'step'          of 'rk4', 'abm4' and 'gauss6' (default: the scene's)
+%     'MaxStep'       longest step of 'adams' (default: none)
+%     'InitialStep'   first step of 'adams' to be tried (default: chosen by itself)
 %     'controls'      function [c, dc, ddc] = f(t) with the joint angles (or torques) of all joints that no motion is given for,
 %                     and their first and second derivative: columns, in the order of jointNames
 %     'control_step'  time between two calls of it (default 0.05); the angles are quintic in between, so the error is of
@@ -28,8 +30,8 @@ classdef Nekton < handle
 %   [d, places] = sim.gap         smallest distance between two boundaries
 %   sim.plot              draws bodies and walls;  sim.animate(t) draws while advancing (see help Nekton.animate)
 %
-%   Errors have identifiers nekton:group:name; a call that fails leaves the simulation as it was (with controls: as it was
-%   after the last full control step). Units are SI per unit depth.
+%   Errors have identifiers nekton:group:name; a call that fails leaves the simulation as it was, but advance and show keep the
+%   steps that they made before: sim.time tells how far they came. Units are SI per unit depth.
 %
 %   clear sim, or delete(sim), frees the memory.
 %
@@ -53,12 +55,12 @@ classdef Nekton < handle
 
     methods
         function self = Nekton(scene, varargin)
-            options = struct('method', '', 'tolerance', [], 'step', [], 'controls', [], 'control_step', 0.05, 'parameters', []);
+            options = struct('method', '', 'tolerance', [], 'step', [], 'MaxStep', [], 'InitialStep', [], 'controls', [], 'control_step', 0.05, 'parameters', []);
             given = {};
             for k = 1:2:numel(varargin)
                 if k == numel(varargin) || ~ischar(varargin{k}) || ~isfield(options, varargin{k})
                     error('nekton:arg:option', 'options are pairs of name and value: %s', ...
-                        strtrim(sprintf('%s ', 'method', 'tolerance', 'step', 'controls', 'control_step', 'parameters')));
+                        strtrim(sprintf('%s ', 'method', 'tolerance', 'step', 'MaxStep', 'InitialStep', 'controls', 'control_step', 'parameters')));
                 end
                 options.(varargin{k}) = varargin{k + 1};
                 given{end + 1} = varargin{k}; %#ok<AGROW>
@@ -144,10 +146,13 @@ classdef Nekton < handle
                 nekton_mex('advance', self.id, t_end);
                 return
             end
-            if ~(isnumeric(t_end) && isscalar(t_end) && isreal(t_end) && isfinite(t_end) && t_end >= self.time())
-                error('nekton:sim:BadStep', 'advance: the time must be finite and not before the present one');
+            if ~(isnumeric(t_end) && isscalar(t_end) && isreal(t_end) && isfinite(t_end))
+                error('nekton:arg:finite', 'advance: the time must be a finite number');
             end
             t = self.time();
+            if t_end < t
+                error('nekton:sim:PastTime', 'advance: %g lies before the present time %g', t_end, t);
+            end
             while t < t_end
                 n = floor(t / self.controlStep * (1 + 4 * eps)) + 1;
                 next = n * self.controlStep;
@@ -433,34 +438,29 @@ classdef Nekton < handle
         end
 
         function method = chooseMethod(options, run)
-            kind = 'adams';
-            step = 0;
-            tolerance = 1e-9;
+            % Option, key of the scene's run.integrator, default.
+            choices = {'method', 'method', 'adams'; 'step', 'step', 0; 'tolerance', 'tolerance', 1e-9; ...
+                'MaxStep', 'max_step', 0; 'InitialStep', 'first_step', 0};
+            given = struct();
             if isfield(run, 'integrator')
-                i = run.integrator;
-                if isfield(i, 'method')
-                    kind = i.method;
+                given = run.integrator;
+            end
+            chosen = choices(:, 3);
+            for k = 1:numel(chosen)
+                if ~isempty(options.(choices{k, 1}))
+                    chosen{k} = options.(choices{k, 1});
+                    % 0 stands for none inside only.
+                    if k > 3 && isequal(chosen{k}, 0)
+                        error('nekton:arg:range', '%s must be positive', choices{k, 1});
+                    end
+                elseif isfield(given, choices{k, 2})
+                    chosen{k} = given.(choices{k, 2});
                 end
-                if isfield(i, 'step')
-                    step = i.step;
-                end
-                if isfield(i, 'tolerance')
-                    tolerance = i.tolerance;
+                if k > 1 && ~(isnumeric(chosen{k}) && isscalar(chosen{k}))
+                    error('nekton:arg:class', '%s must be a number', choices{k, 1});
                 end
             end
-            if ~isempty(options.method)
-                kind = options.method;
-            end
-            if ~isempty(options.step)
-                step = options.step;
-            end
-            if ~isempty(options.tolerance)
-                tolerance = options.tolerance;
-            end
-            if ~isnumeric(step) || ~isnumeric(tolerance) || ~isscalar(step) || ~isscalar(tolerance)
-                error('nekton:arg:class', 'step and tolerance must be numbers');
-            end
-            method = {kind, [step, tolerance, tolerance]};
+            method = {chosen{1}, [chosen{2}, chosen{3}, chosen{3}, chosen{4}, chosen{5}]};
         end
     end
 end

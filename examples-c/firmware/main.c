@@ -119,7 +119,7 @@ static int32_t set_up(void)
 
 static int32_t swim(const char *name, int32_t kind)
 {
-    NEKTON(method) method = {0};
+    NEKTON(method) method;
     NEKTON(sim) *sim;
     nekton_diag diag;
     real q[3 * LINKS];
@@ -127,6 +127,7 @@ static int32_t swim(const char *name, int32_t kind)
     int32_t status;
     int step;
 
+    NEKTON(method_init)(&method);
     method.kind = kind;
     method.step = STEP;
     status = NEKTON(sim_init)(sim_memory.bytes, sizeof sim_memory, model, &method, &sim, &diag);

@@ -2,7 +2,7 @@
 
 use crate::diag::{report, report_notice};
 use crate::types::*;
-use crate::{model, questions, sim};
+use crate::{model, questions, sim, sized};
 use core::ffi::c_void;
 use core::ptr::null_mut;
 
@@ -16,37 +16,64 @@ pub unsafe extern "C" fn nekton_scene_def_init(
     abi_version: u32,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), model::init_scene(def, struct_size, abi_version)) }
+    unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
-/// Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set.
-/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+/// Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+/// nekton_wall_def_init(&def): a macro of that name adds size and version.
+/// Errors: as nekton_scene_def_init. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nekton_wall_def_init(def: *mut WallDef<f64>) -> nekton_status {
+pub unsafe extern "C" fn nekton_wall_def_init(
+    def: *mut WallDef<f64>,
+    struct_size: usize,
+    abi_version: u32,
+) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), model::init_wall(def)) }
+    unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
-/// Fills a body definition with defaults: free, at rest at the origin; the links are still to be set.
-/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+/// Fills a body definition with defaults: free, at rest at the origin; the links are still to be set. Call it as
+/// nekton_body_def_init(&def).
+/// Errors: as nekton_scene_def_init. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nekton_body_def_init(def: *mut BodyDef<f64>) -> nekton_status {
+pub unsafe extern "C" fn nekton_body_def_init(
+    def: *mut BodyDef<f64>,
+    struct_size: usize,
+    abi_version: u32,
+) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), model::init_body(def)) }
+    unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
 /// Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
-/// locked at 0. The shape is still to be set.
-/// Errors: NULL_POINTER, MISALIGNED. Any thread.
+/// locked at 0. The shape is still to be set. Call it as nekton_link_def_init(&def).
+/// Errors: as nekton_scene_def_init. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nekton_link_def_init(def: *mut LinkDef<f64>) -> nekton_status {
+pub unsafe extern "C" fn nekton_link_def_init(
+    def: *mut LinkDef<f64>,
+    struct_size: usize,
+    abi_version: u32,
+) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report(null_mut(), model::init_link(def)) }
+    unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
+}
+
+/// Fills a method with defaults: ADAMS, both tolerances 1e-9 (single precision: 1e-4), steps of its own choice. Call it as
+/// nekton_method_init(&method).
+/// Errors: as nekton_scene_def_init. Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton_method_init(
+    def: *mut MethodDef<f64>,
+    struct_size: usize,
+    abi_version: u32,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
 /// Memory that nekton_model_init needs for this scene. Checks everything but geometry.
 /// Errors: NULL_POINTER, MISALIGNED, ABI_VERSION, UNKNOWN_KIND, NOT_FINITE, OUT_OF_RANGE, EMPTY_SCENE, NODE_COUNT,
-/// BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW. Any thread.
+/// BAD_TOLERANCE, BAD_PARENT, MASSLESS, SIZE_OVERFLOW, UNSUPPORTED (a field of a newer header is set). Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_model_req(
     def: *const SceneDef<f64>,
@@ -166,7 +193,9 @@ pub unsafe extern "C" fn nekton_model_outline_point(
 }
 
 /// Memory that nekton_sim_init needs.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, SIZE_OVERFLOW. Any thread.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, ABI_VERSION (the method was not filled by nekton_method_init),
+/// UNKNOWN_KIND, BAD_STEP, BAD_TOLERANCE, OUT_OF_RANGE (max_step or first_step with a fixed step), SIZE_OVERFLOW,
+/// UNSUPPORTED. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_req(
     model: *const ModelHandle<f64>,
@@ -210,7 +239,7 @@ pub unsafe extern "C" fn nekton_sim_create(
 }
 
 /// Frees a simulation from nekton_sim_create (NULL: does nothing).
-/// Errors: BAD_HANDLE if it is not from there. Any thread, once.
+/// Errors: BAD_HANDLE if it is not from there; BUSY: it is still there. Any thread, once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_free(sim: *mut SimHandle<f64>) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
@@ -219,8 +248,8 @@ pub unsafe extern "C" fn nekton_sim_free(sim: *mut SimHandle<f64>) -> nekton_sta
 
 /// Makes a simulation go on exactly as another one of the same model: time, state, integrator and its past,
 /// channels, counters.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED (also if the models differ). One thread for to; any number may read
-/// from while nobody uses it.
+/// Errors: BAD_HANDLE (also if the models differ), NULL_POINTER, MISALIGNED, BUSY. One thread for to; any number may copy
+/// from from while nobody else uses it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_copy(
     to: *mut SimHandle<f64>,
@@ -307,8 +336,8 @@ pub unsafe extern "C" fn nekton_sim_restart(sim: *mut SimHandle<f64>) -> nekton_
 /// of the step is a tenth of a body's reach, or of a radian, or more (see nekton_sim_time_error; GAUSS6 has no estimate);
 /// UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
 /// when, and what is closest.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL; the
-/// simulation is then as it was, bit for bit. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
+/// the simulation is then as it was, bit for bit. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_step(sim: *mut SimHandle<f64>, diag: *mut nekton_diag) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
@@ -318,9 +347,11 @@ pub unsafe extern "C" fn nekton_sim_step(sim: *mut SimHandle<f64>, diag: *mut ne
 /// Advances to exactly t_end; nothing is evaluated beyond it. A fixed-step method shortens its last step. This is
 /// the step function of a controller: set channels, advance by a sample time, read the state. Notices as nekton_sim_step,
 /// with the largest error met.
-/// Errors: as nekton_sim_step, and BAD_STEP (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
-/// nekton_sim_set_step_limit). The simulation is then
-/// as it was before the call, bit for bit; diag->time tells how far it came. One thread per simulation.
+/// Errors: as nekton_sim_step, and PAST_TIME (t_end lies before the time shown), NOT_FINITE, TOO_MANY_STEPS (see
+/// nekton_sim_set_step_limit; of fixed steps at once, with how many it takes and how many are allowed). The steps made until then are kept: the state shown is that of the last good step
+/// (nekton_sim_time and diag->time tell when), and the simulation may go on, as if it had been asked to come this far.
+/// If no step was good, it is as it was before the call, bit for bit. To get back further, copy before you advance
+/// (nekton_sim_copy). One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_advance(
     sim: *mut SimHandle<f64>,
@@ -333,7 +364,7 @@ pub unsafe extern "C" fn nekton_sim_advance(
 
 /// Shows the state at t_out; the integrator may run ahead, but not beyond t_stop. Cheaper than nekton_sim_advance
 /// when output is wanted at many times: ADAMS keeps its steps and interpolates.
-/// Errors: as nekton_sim_advance; BAD_STEP also if t_out > t_stop. One thread per simulation.
+/// Errors: as nekton_sim_advance; PAST_TIME also if t_out > t_stop. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_advance_dense(
     sim: *mut SimHandle<f64>,

@@ -1,8 +1,9 @@
-//! A scene definition from C that was checked from end to end: every pointer, count, kind and number.
+//! Checks of a scene's definition, before anything is made of it.
 
 use crate::convert;
 use crate::diag::{Fault, Outcome};
 use crate::shared::NEKTON_ABI_VERSION;
+use crate::sized::{self, Defs};
 use crate::types::{BodyDef, LinkDef, SceneDef, WallDef};
 use nekton::scene::{Body, Description, Drive, Link, Root, Scene, Shape, Signal, Wall};
 use nekton::{Place, Real, Status};
@@ -10,27 +11,23 @@ use nekton::{Place, Real, Status};
 /// A checked definition: the core reads it item by item.
 pub(crate) struct Checked<'a, R> {
     settings: Scene<'a, R>,
-    tank: Option<&'a WallDef<R>>,
-    obstacles: &'a [WallDef<R>],
-    bodies: &'a [BodyDef<R>],
+    tank: Defs<'a, WallDef<R>>,
+    obstacles: Defs<'a, WallDef<R>>,
+    bodies: Defs<'a, BodyDef<R>>,
 }
 
-impl<'a, R: Real> Checked<'a, R> {
+impl<R: Real> Checked<'_, R> {
     /// Checks a definition. Geometry is left to the core.
     pub(crate) unsafe fn new(def: *const SceneDef<R>) -> Outcome<Self> {
         convert::check_pointer("def", def)?;
-        // The size comes first, so that nothing is read that an older caller does not have.
-        // SAFETY: not NULL, aligned; the caller promises at least the struct that it says it has.
+        // SAFETY: not NULL, aligned; both numbers come first, so that nothing is read that another version does not have.
         let (size, version) = unsafe { ((*def).struct_size, (*def).abi_version) };
-        if size as usize != size_of::<SceneDef<R>>() {
-            return Err(Fault::of(Status::AbiVersion, "struct_size", f64::from(size)));
-        }
-        if version != NEKTON_ABI_VERSION {
+        if size != 0 && version != NEKTON_ABI_VERSION {
             return Err(Fault::of(Status::AbiVersion, "abi_version", f64::from(version)));
         }
-        // SAFETY: as above; the size is that of this struct.
-        let def = unsafe { &*def };
-        let settings = convert::settings(def)?;
+        // SAFETY (all): the caller's promise.
+        let def = unsafe { sized::one("def", def) }?;
+        let settings = convert::settings(&def)?;
         for (what, x) in [
             ("fluid_density", def.fluid_density),
             ("gravity", def.gravity),
@@ -40,37 +37,36 @@ impl<'a, R: Real> Checked<'a, R> {
         ] {
             finite(what, x)?;
         }
-        let tank = if def.tank.is_null() {
-            None
-        } else {
-            convert::check_pointer("tank", def.tank)?;
-            // SAFETY: not NULL, aligned; the caller's promise.
-            Some(unsafe { &*def.tank })
-        };
-        // SAFETY (both): the caller's promise.
-        let obstacles = unsafe { convert::array("obstacles", def.obstacles, def.obstacle_count) }?;
-        let bodies = unsafe { convert::array("bodies", def.bodies, def.body_count) }?;
-        let walls = tank.into_iter().map(|w| (Place::Tank, w));
-        for (place, w) in walls.chain(obstacles.iter().enumerate().map(|(i, w)| (Place::Obstacle(i), w))) {
-            // SAFETY: the caller's promise.
-            check_wall(unsafe { convert::wall(w) }).map_err(|f| f.at(place))?;
+        let walls = usize::from(!def.tank.is_null());
+        let tank = unsafe { Defs::new("tank", def.tank, walls) }?;
+        let obstacles = unsafe { Defs::new("obstacles", def.obstacles, def.obstacle_count) }?;
+        let bodies = unsafe { Defs::new("bodies", def.bodies, def.body_count) }?;
+        let of = |walls: &Defs<'_, WallDef<R>>, i: usize| unsafe { convert::wall(&walls.get(i)?) };
+        for (defs, place) in [(&tank, (|_| Place::Tank) as fn(usize) -> Place), (&obstacles, Place::Obstacle)] {
+            for i in 0..defs.count() {
+                check_wall(of(defs, i)).map_err(|f| f.at(place(i)))?;
+            }
         }
-        for (b, def) in bodies.iter().enumerate() {
-            // SAFETY: the caller's promise.
-            let links = check_body(unsafe { convert::body(def) })
-                .and_then(|()| unsafe { convert::array("links", def.links, def.link_count) })
-                .map_err(|f| f.at(Place::Body(b)))?;
-            for (l, def) in links.iter().enumerate() {
-                // SAFETY: the caller's promise.
-                check_link(unsafe { convert::link(def) }).map_err(|f| f.at(Place::Link(b, l)))?;
+        for b in 0..bodies.count() {
+            let links = bodies.get(b).and_then(|def| unsafe {
+                check_body(convert::body(&def))?;
+                Defs::new("links", def.links, def.link_count)
+            });
+            let links = links.map_err(|f| f.at(Place::Body(b)))?;
+            for l in 0..links.count() {
+                let link = links.get(l).and_then(|def| unsafe { convert::link(&def) });
+                check_link(link).map_err(|f| f.at(Place::Link(b, l)))?;
             }
         }
         Ok(Checked { settings, tank, obstacles, bodies })
     }
+}
 
-    fn links(&self, b: usize) -> &'a [LinkDef<R>] {
+impl<'a, R: Real> Checked<'a, R> {
+    fn links(&self, b: usize) -> Option<Defs<'a, LinkDef<R>>> {
+        let body = self.bodies.get(b).ok()?;
         // SAFETY: checked when this was made.
-        self.bodies.get(b).and_then(|d| unsafe { convert::array("links", d.links, d.link_count) }.ok()).unwrap_or(&[])
+        unsafe { Defs::new("links", body.links, body.link_count) }.ok()
     }
 }
 
@@ -161,24 +157,24 @@ impl<R: Real> Description<R> for Checked<'_, R> {
     }
     fn tank(&self) -> Option<Wall<'_, R>> {
         // SAFETY (all): checked when this was made.
-        self.tank.and_then(|w| unsafe { convert::wall(w) }.ok())
+        self.tank.get(0).and_then(|w| unsafe { convert::wall(&w) }).ok()
     }
     fn obstacle_count(&self) -> usize {
-        self.obstacles.len()
+        self.obstacles.count()
     }
     fn obstacle(&self, i: usize) -> Option<Wall<'_, R>> {
-        self.obstacles.get(i).and_then(|w| unsafe { convert::wall(w) }.ok())
+        self.obstacles.get(i).and_then(|w| unsafe { convert::wall(&w) }).ok()
     }
     fn body_count(&self) -> usize {
-        self.bodies.len()
+        self.bodies.count()
     }
     fn body(&self, b: usize) -> Option<Body<'_, R>> {
-        self.bodies.get(b).and_then(|d| unsafe { convert::body(d) }.ok())
+        self.bodies.get(b).and_then(|d| unsafe { convert::body(&d) }).ok()
     }
     fn link_count(&self, b: usize) -> usize {
-        self.links(b).len()
+        self.links(b).map_or(0, |links| links.count())
     }
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
-        self.links(b).get(l).and_then(|d| unsafe { convert::link(d) }.ok())
+        self.links(b)?.get(l).and_then(|d| unsafe { convert::link(&d) }).ok()
     }
 }

@@ -46,7 +46,7 @@ pub(crate) fn check_pointer<T>(what: &'static str, pointer: *const T) -> Outcome
     Ok(())
 }
 
-pub(crate) unsafe fn shape<R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'_, R>> {
+pub(crate) unsafe fn shape<'a, R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'a, R>> {
     let radius = if s.corner_radius == R::zero() { None } else { Some(s.corner_radius) };
     // SAFETY: the caller's promise about the definition.
     let points = || unsafe { array("points", s.points, s.point_count) };
@@ -63,7 +63,7 @@ pub(crate) unsafe fn shape<R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'_, R>> {
 const _: () = assert!(size_of::<HarmonicDef<f64>>() == size_of::<Harmonic<f64>>());
 const _: () = assert!(size_of::<HarmonicDef<f32>>() == size_of::<Harmonic<f32>>());
 
-pub(crate) unsafe fn signal<R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'_, R>> {
+pub(crate) unsafe fn signal<'a, R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'a, R>> {
     Ok(match s.kind {
         NEKTON_SIGNAL_CONSTANT => Signal::Constant(s.value),
         NEKTON_SIGNAL_HARMONIC => {
@@ -82,7 +82,7 @@ pub(crate) unsafe fn signal<R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'_, R>>
     })
 }
 
-pub(crate) unsafe fn wall<R: Real>(w: &WallDef<R>) -> Outcome<Wall<'_, R>> {
+pub(crate) unsafe fn wall<'a, R: Real>(w: &WallDef<R>) -> Outcome<Wall<'a, R>> {
     Ok(Wall {
         // SAFETY: the caller's promise about the definition.
         shape: unsafe { shape(&w.shape) }?,
@@ -93,7 +93,7 @@ pub(crate) unsafe fn wall<R: Real>(w: &WallDef<R>) -> Outcome<Wall<'_, R>> {
     })
 }
 
-pub(crate) unsafe fn link<R: Real>(l: &LinkDef<R>) -> Outcome<Link<'_, R>> {
+pub(crate) unsafe fn link<'a, R: Real>(l: &LinkDef<R>) -> Outcome<Link<'a, R>> {
     let mass = match l.mass_kind {
         NEKTON_MASS_DENSITY => Mass::Density(l.density),
         NEKTON_MASS_GIVEN => Mass::Given { mass: l.mass, inertia: l.inertia, centre_of_mass: l.centre_of_mass },
@@ -105,7 +105,7 @@ pub(crate) unsafe fn link<R: Real>(l: &LinkDef<R>) -> Outcome<Link<'_, R>> {
     Ok(Link { shape, mass, nodes: l.nodes, circulation: l.circulation, joint })
 }
 
-unsafe fn joint<R: Real>(l: &LinkDef<R>) -> Outcome<Joint<'_, R>> {
+unsafe fn joint<'a, R: Real>(l: &LinkDef<R>) -> Outcome<Joint<'a, R>> {
     let Ok(parent) = usize::try_from(l.parent) else {
         return Err(Fault::of(Status::BadParent, "parent", f64::from(l.parent)));
     };
@@ -132,7 +132,7 @@ unsafe fn joint<R: Real>(l: &LinkDef<R>) -> Outcome<Joint<'_, R>> {
 }
 
 /// A body without its links.
-pub(crate) unsafe fn body<R: Real>(b: &BodyDef<R>) -> Outcome<Body<'_, R>> {
+pub(crate) unsafe fn body<'a, R: Real>(b: &BodyDef<R>) -> Outcome<Body<'a, R>> {
     let root = match b.root {
         NEKTON_ROOT_FREE => Root::Free,
         NEKTON_ROOT_PRESCRIBED => {
@@ -146,7 +146,7 @@ pub(crate) unsafe fn body<R: Real>(b: &BodyDef<R>) -> Outcome<Body<'_, R>> {
 }
 
 /// A scene without its walls and bodies.
-pub(crate) fn settings<R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'_, R>> {
+pub(crate) fn settings<'a, R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'a, R>> {
     Ok(Scene {
         repulsion: if s.repulsion_epsilon == R::zero() {
             None
@@ -175,11 +175,24 @@ pub(crate) fn settings<R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'_, R>> {
 }
 
 pub(crate) fn method<R: Real>(m: &MethodDef<R>) -> Outcome<Method<R>> {
-    Ok(match m.kind {
+    let fixed = match m.kind {
         NEKTON_METHOD_RK4 => Method::Rk4 { step: m.step },
         NEKTON_METHOD_ABM4 => Method::Abm4 { step: m.step },
         NEKTON_METHOD_GAUSS6 => Method::Gauss6 { step: m.step },
-        NEKTON_METHOD_ADAMS => Method::adams(m.relative, m.absolute),
+        NEKTON_METHOD_ADAMS => {
+            return Ok(Method::Adams {
+                relative: m.relative,
+                absolute: m.absolute,
+                max_step: m.max_step,
+                first_step: m.first_step,
+            });
+        }
         kind => return unknown("method.kind", kind),
-    })
+    };
+    for (what, x) in [("max_step with a fixed step", m.max_step), ("first_step with a fixed step", m.first_step)] {
+        if x != R::zero() {
+            return Err(Fault::of(Status::OutOfRange, what, x.to_f64()));
+        }
+    }
+    Ok(fixed)
 }

@@ -86,6 +86,7 @@ impl nekton_diag {
             other: NOWHERE,
             item: -1,
             value: f64::NAN,
+            limit: f64::NAN,
             time: f64::NAN,
             what: [0; 32],
         }
@@ -97,6 +98,7 @@ impl nekton_diag {
             other: place_or_none(fault.error.other),
             item: fault.item,
             value: fault.error.value,
+            limit: fault.error.limit,
             time: fault.time,
             ..Self::ok()
         };
@@ -220,7 +222,7 @@ impl Text<'_> {
     }
 }
 
-/// "place: text (with other) (what[item] = value) at t = time" into `buffer`, always ended by 0.
+/// "place: text (with other) (what[item] = value beside limit) at t = time" into `buffer`, always ended by 0.
 pub(crate) fn describe(diag: &nekton_diag, buffer: &mut [u8]) {
     let Some((last, room)) = buffer.split_last_mut() else { return };
     *last = 0;
@@ -248,6 +250,10 @@ pub(crate) fn describe(diag: &nekton_diag, buffer: &mut [u8]) {
         if !diag.value.is_nan() {
             out.text(" = ");
             out.number(diag.value);
+        }
+        if !diag.limit.is_nan() {
+            out.text(" beside ");
+            out.number(diag.limit);
         }
         out.text(")");
     }

@@ -5,9 +5,12 @@
 //! Every exported function is a line or two around generic code: `api64` is written by hand, `api32` is made from it by
 //! `cargo xtask header`, `shared` has no twin.
 //!
+//! Definitions say their size, so that callers of older and newer headers are understood (`sized`); `defaults` has what they do not
+//! have. A simulation that is in use is refused to others (`turns`).
+//!
 //! Pointers: each is checked for NULL and alignment, each count for overflow, each kind for its range, before anything is read
 //! through it or written. What cannot be checked is the caller's duty: that a pointer with a count points to so many items,
-//! that objects are used by one thread at a time (models: any number), and that memory stays until the object is not used.
+//! that definitions have the size that they say, and that memory stays until the object is not used.
 
 #[cfg(all(not(feature = "std"), not(panic = "abort")))]
 compile_error!("without std the library must be built with panic = \"abort\": cargo build --profile embedded");
@@ -20,6 +23,7 @@ pub mod api64;
 mod buffers;
 mod check;
 mod convert;
+mod defaults;
 pub mod diag;
 mod memory;
 mod model;
@@ -28,6 +32,8 @@ mod questions;
 pub mod shared;
 mod sim;
 mod sim_object;
+mod sized;
+mod turns;
 pub mod types;
 
 #[cfg(not(feature = "std"))]

@@ -5,7 +5,6 @@ use crate::convert::check_pointer;
 use crate::diag::{Fault, Outcome, place_of};
 use crate::memory::check_memory;
 use crate::model_object::{begin_model, model, model_req};
-use crate::shared::NEKTON_ABI_VERSION;
 #[cfg(feature = "std")]
 use crate::shared::NEKTON_ALIGN;
 use crate::types::*;
@@ -16,119 +15,6 @@ pub(crate) unsafe fn give<T>(to: *mut T, value: T) -> Outcome<Status> {
     // SAFETY: `check_pointer` was passed.
     unsafe { to.write(value) };
     Ok(Status::Ok)
-}
-
-fn no_shape<R: Real>() -> ShapeDef<R> {
-    let zero = R::zero();
-    ShapeDef {
-        kind: NEKTON_SHAPE_NONE,
-        lobes: 0,
-        a: zero,
-        b: zero,
-        radius: zero,
-        amplitude: zero,
-        width: zero,
-        height: zero,
-        corner_radius: zero,
-        points: core::ptr::null(),
-        point_count: 0,
-    }
-}
-
-fn no_signal<R: Real>() -> SignalDef<R> {
-    let zero = R::zero();
-    SignalDef {
-        kind: NEKTON_SIGNAL_CONSTANT,
-        value: zero,
-        harmonics: core::ptr::null(),
-        harmonic_count: 0,
-        window: WindowDef { from: zero, to: zero, ramp: zero },
-        rows: core::ptr::null(),
-        row_count: 0,
-    }
-}
-
-pub(crate) unsafe fn init_scene<R: Real>(def: *mut SceneDef<R>, size: usize, version: u32) -> Outcome<Status> {
-    check_pointer("def", def.cast_const())?;
-    if size != size_of::<SceneDef<R>>() {
-        return Err(Fault::of(Status::AbiVersion, "struct_size", size as f64));
-    }
-    if version != NEKTON_ABI_VERSION {
-        return Err(Fault::of(Status::AbiVersion, "abi_version", f64::from(version)));
-    }
-    let content = SceneDef {
-        struct_size: size as u32,
-        abi_version: version,
-        fluid_density: R::one(),
-        gravity: R::zero(),
-        repulsion_epsilon: R::zero(),
-        repulsion_alpha: R::lit(4.0),
-        circulation: NEKTON_CIRCULATION_FULL,
-        force: NEKTON_FORCE_EXACT_GRADIENT,
-        quadrature: NEKTON_QUADRATURE_GRADED,
-        tolerance: R::zero(),
-        shortcuts: 1,
-        tank: core::ptr::null(),
-        obstacles: core::ptr::null(),
-        obstacle_count: 0,
-        bodies: core::ptr::null(),
-        body_count: 0,
-    };
-    // SAFETY: checked; the caller promises room for this struct.
-    unsafe { give(def, content) }
-}
-
-pub(crate) unsafe fn init_wall<R: Real>(def: *mut WallDef<R>) -> Outcome<Status> {
-    check_pointer("def", def.cast_const())?;
-    let zero = R::zero();
-    let content = WallDef { shape: no_shape(), position: [zero; 2], angle: zero, nodes: 64, circulation: zero };
-    // SAFETY: as above.
-    unsafe { give(def, content) }
-}
-
-pub(crate) unsafe fn init_link<R: Real>(def: *mut LinkDef<R>) -> Outcome<Status> {
-    check_pointer("def", def.cast_const())?;
-    let zero = R::zero();
-    let content = LinkDef {
-        shape: no_shape(),
-        nodes: 64,
-        circulation: zero,
-        mass_kind: NEKTON_MASS_DENSITY,
-        parent: -1,
-        density: R::one(),
-        mass: zero,
-        inertia: zero,
-        centre_of_mass: [zero; 2],
-        joint: NEKTON_JOINT_HINGE,
-        drive: NEKTON_DRIVE_LOCKED,
-        parent_anchor: [zero; 2],
-        self_anchor: [zero; 2],
-        axis: [R::one(), zero],
-        angle: zero,
-        locked_value: zero,
-        signal: no_signal(),
-        stiffness: zero,
-        damping: zero,
-        rest: zero,
-        start: [zero; 2],
-    };
-    // SAFETY: as above.
-    unsafe { give(def, content) }
-}
-
-pub(crate) unsafe fn init_body<R: Real>(def: *mut BodyDef<R>) -> Outcome<Status> {
-    check_pointer("def", def.cast_const())?;
-    let zero = R::zero();
-    let content = BodyDef {
-        pose: [zero; 3],
-        velocity: [zero; 3],
-        root: NEKTON_ROOT_FREE,
-        motion: [no_signal(); 3],
-        links: core::ptr::null(),
-        link_count: 0,
-    };
-    // SAFETY: as above.
-    unsafe { give(def, content) }
 }
 
 pub(crate) unsafe fn req<R: Real>(def: *const SceneDef<R>, req: *mut nekton_req) -> Outcome<Status> {

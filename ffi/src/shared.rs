@@ -5,8 +5,9 @@ use crate::types::{nekton_diag, nekton_status};
 use core::ffi::c_char;
 use nekton::Status;
 
-/// Version of the interface. Goes up with every change that is not compatible.
-pub const NEKTON_ABI_VERSION: u32 = 1;
+/// Version of the interface. Goes up with every change that is not compatible; fields appended to a definition are
+/// compatible, by its struct_size.
+pub const NEKTON_ABI_VERSION: u32 = 2;
 
 /// Capability: nekton_model_create, nekton_sim_create and their free work.
 pub const NEKTON_CAP_ALLOC: u32 = 1;
@@ -39,8 +40,8 @@ pub extern "C" fn nekton_status_name(status: nekton_status) -> *const c_char {
     Status::from_code(status).map_or("Unknown\0", Status::name_with_nul).as_ptr().cast()
 }
 
-/// Writes "place: text (with other) (what = value) at t = time" into text (size bytes, ended by 0, cut off if too long; 160 are
-/// enough). Does nothing when diag or text is NULL or size is 0. Any thread.
+/// Writes "place: text (with other) (what = value beside limit) at t = time" into text (size bytes, ended by 0, cut off if too
+/// long; 256 are enough). Does nothing when diag or text is NULL or size is 0. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_diag_text(diag: *const nekton_diag, text: *mut c_char, size: usize) {
     if diag.is_null() || !diag.is_aligned() || text.is_null() || size == 0 || size > isize::MAX as usize {

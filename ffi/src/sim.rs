@@ -6,14 +6,14 @@ use crate::diag::{Fault, Outcome};
 use crate::memory::{check_memory, copy};
 use crate::model::give;
 use crate::model_object::{model, model_bytes};
-use crate::sim_object::{make_sim, remembered, sim, sim_req};
+use crate::sim_object::{Failed, make_sim, remembered, sim, sim_req};
+use crate::sized;
 use crate::types::*;
 use nekton::{Method, Real, Result, Sim, Status};
 
 unsafe fn method<R: Real>(def: *const MethodDef<R>) -> Outcome<Method<R>> {
-    check_pointer("method", def)?;
-    // SAFETY: checked; the caller's promise.
-    read_method(unsafe { &*def })
+    // SAFETY: the caller's promise.
+    read_method(&unsafe { sized::one("method", def) }?)
 }
 
 pub(crate) unsafe fn req<R: Real>(
@@ -132,7 +132,7 @@ pub(crate) unsafe fn set_state<R: Real>(handle: *mut SimHandle<R>, t: R, y: *con
             return Err(Fault::of(Status::Aliasing, "y", f64::NAN));
         }
         let y = input("y", y, n, need)?;
-        parts.attempt(|sim| sim.set_state(t, y)).map_err(|f| Fault { time: f64::NAN, ..f })?;
+        parts.attempt(Failed::LeavesNothing, |sim| sim.set_state(t, y)).map_err(|f| Fault { time: f64::NAN, ..f })?;
     }
     Ok(Status::Ok)
 }
@@ -143,14 +143,14 @@ pub(crate) unsafe fn restart<R: Real>(handle: *mut SimHandle<R>) -> Outcome<Stat
     Ok(Status::Ok)
 }
 
-/// Attempts steps; the notice if the tolerance in space was not met.
+/// Attempts steps; the notice if there is one.
 unsafe fn steps<R: Real>(
     handle: *mut SimHandle<R>,
     call: impl FnOnce(&mut Sim<'_, R>) -> Result<()>,
 ) -> Outcome<Option<Fault>> {
     // SAFETY: checked in `sim`.
     let mut parts = unsafe { sim(handle.cast_const()) }?;
-    parts.attempt(call)?;
+    parts.attempt(Failed::KeepsSteps, call)?;
     let notice = parts.view()?.notice();
     Ok(notice.map(|(time, error)| Fault { time: time.to_f64(), ..Fault::from(error) }))
 }
@@ -184,7 +184,7 @@ pub(crate) unsafe fn set_channel<R: Real>(
     // SAFETY: checked above and in `sim`; the caller promises four numbers each.
     unsafe {
         let (from, to) = (*from, *to);
-        let done = sim(handle.cast_const())?.attempt(|sim| sim.set_channel(channel, from, to));
+        let done = sim(handle.cast_const())?.attempt(Failed::LeavesNothing, |sim| sim.set_channel(channel, from, to));
         done.map_err(|f| Fault { time: f64::NAN, ..f })?;
     }
     Ok(Status::Ok)
@@ -209,7 +209,7 @@ pub(crate) unsafe fn rhs<R: Real>(
         }
         let y = input("y", y, n, need)?;
         let ydot = output(&parts, "ydot", ydot, n, need)?;
-        parts.attempt(|sim| sim.rhs(t, y, ydot)).map_err(|f| Fault { time: f64::NAN, ..f })?;
+        parts.attempt(Failed::LeavesNothing, |sim| sim.rhs(t, y, ydot)).map_err(|f| Fault { time: f64::NAN, ..f })?;
         sound(ydot.iter().copied())
     }
 }

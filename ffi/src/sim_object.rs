@@ -7,7 +7,9 @@ use crate::memory::{LINE, Sum, copy, fill, mark, on_line, overlap, round};
 use crate::memory::{Owned, retire};
 use crate::model_object::{model, model_object};
 use crate::shared::NEKTON_ALIGN as ALIGN;
+use crate::turns::{Turn, Turns};
 use crate::types::{ModelHandle, SimHandle, nekton_req};
+use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 use nekton::{Model, Real, Sim, SimHead, Status};
 
@@ -25,8 +27,10 @@ pub(crate) struct SimObject<R> {
     reals_at: usize,
     /// Reals remembered from one call to the next; a copy of them lies behind the reals.
     kept: usize,
-    head: MaybeUninit<SimHead<R>>,
-    saved: MaybeUninit<SimHead<R>>,
+    /// Who uses what follows, and the reals. All before it stays as it is.
+    turns: Turns,
+    head: UnsafeCell<MaybeUninit<SimHead<R>>>,
+    saved: UnsafeCell<MaybeUninit<SimHead<R>>>,
 }
 
 const _: () = assert!(align_of::<SimObject<f64>>() <= ALIGN);
@@ -74,8 +78,9 @@ pub(crate) unsafe fn make_sim<R: Real>(
             reals,
             reals_at,
             kept,
-            head: MaybeUninit::new(head),
-            saved: MaybeUninit::new(head),
+            turns: Turns::new(),
+            head: UnsafeCell::new(MaybeUninit::new(head)),
+            saved: UnsafeCell::new(MaybeUninit::new(head)),
         };
         mem.cast::<SimObject<R>>().write(object);
         Ok(mem.cast())
@@ -87,6 +92,7 @@ pub(crate) struct Remembered<'a, R> {
     pub(crate) handle: *const ModelHandle<R>,
     head: &'a SimHead<R>,
     reals: &'a [R],
+    _turn: Turn<'a>,
 }
 
 /// The front of a simulation whose mark and model are in order.
@@ -107,12 +113,13 @@ unsafe fn sim_object<'a, R: Real>(handle: *const SimHandle<R>) -> Outcome<&'a Si
 }
 
 pub(crate) unsafe fn remembered<'a, R: Real>(handle: *const SimHandle<R>) -> Outcome<Remembered<'a, R>> {
-    // SAFETY: a marked object was completed by `make_sim`; the caller promises that no thread changes it meanwhile.
+    // SAFETY: a marked object was completed by `make_sim`; while this is read, nobody gets a turn to write.
     unsafe {
         let o = sim_object(handle)?;
+        let turn = o.turns.read()?;
         let first = handle.cast::<u8>().add(o.reals_at).cast::<R>();
         let reals = core::slice::from_raw_parts(first, o.kept);
-        Ok(Remembered { handle: o.model, head: o.head.assume_init_ref(), reals })
+        Ok(Remembered { handle: o.model, head: (*o.head.get()).assume_init_ref(), reals, _turn: turn })
     }
 }
 
@@ -126,25 +133,35 @@ pub(crate) struct SimParts<'a, R> {
     saved: &'a mut [R],
     /// Where the object is, and its bytes: no buffer of the caller may lie among them.
     range: (usize, usize),
+    _turn: Turn<'a>,
 }
 
 pub(crate) unsafe fn sim<'a, R: Real>(handle: *const SimHandle<R>) -> Outcome<SimParts<'a, R>> {
-    // SAFETY: a marked object was completed by `make_sim`; it is this thread's during the call.
+    // SAFETY: a marked object was completed by `make_sim`; nobody else gets a turn during the call.
     unsafe {
-        sim_object(handle)?;
-        let object = handle.cast_mut().cast::<SimObject<R>>();
-        let o = &mut *object;
-        let first = object.cast::<u8>().add(o.reals_at).cast::<R>();
+        let o = sim_object(handle)?;
+        let turn = o.turns.write()?;
+        let first = handle.cast_mut().cast::<u8>().add(o.reals_at).cast::<R>();
         Ok(SimParts {
             handle: o.model,
             model: model(o.model)?,
-            head: o.head.assume_init_mut(),
+            head: (*o.head.get()).assume_init_mut(),
             reals: core::slice::from_raw_parts_mut(first, o.reals),
-            saved_head: o.saved.assume_init_mut(),
+            saved_head: (*o.saved.get()).assume_init_mut(),
             saved: core::slice::from_raw_parts_mut(first.add(o.reals), o.kept),
-            range: (object.addr(), o.bytes),
+            range: (handle.addr(), o.bytes),
+            _turn: turn,
         })
     }
+}
+
+/// What a call that fails leaves behind.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Failed {
+    /// Nothing: the simulation is put back to what it was, bit for bit.
+    LeavesNothing,
+    /// The steps that it made before, if there are any.
+    KeepsSteps,
 }
 
 impl<R: Real> SimParts<'_, R> {
@@ -153,17 +170,24 @@ impl<R: Real> SimParts<'_, R> {
         Ok(Sim::view(self.model, self.head, self.reals)?)
     }
 
-    /// Runs a call that changes the state. If it fails, the simulation is put back to what it was, bit for bit.
-    pub(crate) fn attempt(&mut self, call: impl FnOnce(&mut Sim<'_, R>) -> nekton::Result<()>) -> Outcome {
+    /// Runs a call that changes the state. The error tells the time that was reached.
+    pub(crate) fn attempt(
+        &mut self,
+        failed: Failed,
+        call: impl FnOnce(&mut Sim<'_, R>) -> nekton::Result<()>,
+    ) -> Outcome {
         *self.saved_head = *self.head;
         copy(self.saved, self.reals);
         let mut sim = Sim::view(self.model, self.head, self.reals)?;
+        let before = sim.time();
         let outcome = call(&mut sim);
-        let time = sim.time().to_f64();
+        let time = sim.time();
         outcome.map_err(|error| {
-            self.head.put_back(self.saved_head);
-            copy(self.reals, self.saved);
-            Fault { time, ..Fault::from(error) }
+            if failed == Failed::LeavesNothing || time == before {
+                self.head.put_back(self.saved_head);
+                copy(self.reals, self.saved);
+            }
+            Fault { time: time.to_f64(), ..Fault::from(error) }
         })
     }
 
@@ -189,7 +213,13 @@ pub(crate) unsafe fn retire_sim<R: Real>(handle: *mut SimHandle<R>) -> Outcome<O
         if object.cast::<u64>().read() != mark::<R>(SIM_MARK) {
             return Err(Fault::of(Status::BadHandle, "sim", f64::NAN));
         }
+        let turn = (*object).turns.write()?;
         let owned = Owned { mem: handle.cast(), bytes: (*object).bytes };
-        retire(owned, (*object).owned, "sim")
+        let ended = retire(owned, (*object).owned, "sim");
+        if ended.is_ok() {
+            // There is nothing left to give back.
+            core::mem::forget(turn);
+        }
+        ended
     }
 }

@@ -105,6 +105,15 @@ fn size_macros_are_enough_and_not_much_more() {
     }
 }
 
+#[test]
+fn programs_of_older_and_newer_headers_are_understood() {
+    let source = source("older_and_newer.c");
+    for (name, text) in [("older_and_newer", source.clone()), ("older_and_newer32", single(&source))] {
+        let printed = run(name, &text);
+        assert!(printed.lines().count() > 30 && !printed.contains("WRONG"), "{printed}");
+    }
+}
+
 /// Every function that the headers declare.
 fn functions() -> Vec<String> {
     let headers =

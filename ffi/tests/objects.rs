@@ -139,36 +139,49 @@ fn steps_too_long_for_the_motion_return_a_notice() {
     }
 }
 
+/// A model of two discs on a collision course, which touch at t = 0.5: in vacuum nothing keeps them apart.
+fn collision() -> (Vec<u64>, *mut ModelHandle<f64>) {
+    let link = ellipse(0.5, 0.5);
+    let mut bodies = [body(), body()];
+    for (b, x, v) in [(0, 0.0, 1.0), (1, 2.0, -1.0)] {
+        (bodies[b].pose, bodies[b].velocity) = ([x, 0.0, 0.0], [v, 0.0, 0.0]);
+        (bodies[b].links, bodies[b].link_count) = (&link, 1);
+    }
+    let mut def = scene();
+    (def.bodies, def.body_count, def.fluid_density) = (bodies.as_ptr(), 2, 0.0);
+    compile(&def)
+}
+
+/// State, positions, velocities and counters.
+type Shown = ((f64, Vec<f64>), Vec<f64>, Vec<f64>, nekton_counters);
+
+fn shown(model: *const ModelHandle<f64>, sim: *const SimHandle<f64>) -> Shown {
+    let n = plan(model).coordinates;
+    let (mut q, mut qd, mut c) = (vec![0.0; n], vec![0.0; n], nekton_counters::default());
+    unsafe {
+        assert_eq!(sim_positions(sim, q.as_mut_ptr(), n), 0);
+        assert_eq!(sim_velocities(sim, qd.as_mut_ptr(), n), 0);
+        assert_eq!(sim_counters(sim, &mut c), 0);
+    }
+    (state(model, sim), q, qd, c)
+}
+
+fn every_method() -> [MethodDef<f64>; 4] {
+    let [rk4, abm4, gauss6] = [NEKTON_METHOD_RK4, NEKTON_METHOD_ABM4, NEKTON_METHOD_GAUSS6].map(fixed);
+    [rk4, abm4, gauss6, adams()]
+}
+
 #[test]
 fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
-    let fixed_steps = [NEKTON_METHOD_RK4, NEKTON_METHOD_ABM4, NEKTON_METHOD_GAUSS6].map(fixed);
-    for method in fixed_steps.into_iter().chain([adams()]) {
-        // Two bodies on a collision course.
-        let link = ellipse(0.5, 0.5);
-        let mut bodies = [body(), body()];
-        for (b, x, v) in [(0, 0.0, 1.0), (1, 2.0, -1.0)] {
-            (bodies[b].pose, bodies[b].velocity) = ([x, 0.0, 0.0], [v, 0.0, 0.0]);
-            (bodies[b].links, bodies[b].link_count) = (&link, 1);
-        }
-        let mut def = scene();
-        // In vacuum nothing keeps them apart.
-        (def.bodies, def.body_count, def.fluid_density) = (bodies.as_ptr(), 2, 0.0);
-        let (_model_memory, model) = compile(&def);
+    for method in every_method() {
+        let (_model_memory, model) = collision();
         let (_memory, sim) = simulate(model, &method);
         let (_twin_memory, twin) = simulate(model, &method);
         for s in [sim, twin] {
             assert_eq!(unsafe { sim_advance(s, 0.1, null_mut()) }, 0);
             assert_eq!(unsafe { sim_advance_dense(s, 0.12, 0.2, null_mut()) }, 0);
         }
-        let shown = |s| {
-            let (mut q, mut qd, mut c) = ([0.0; 6], [0.0; 6], nekton_counters::default());
-            unsafe {
-                assert_eq!(sim_positions(s, q.as_mut_ptr(), 6), 0);
-                assert_eq!(sim_velocities(s, qd.as_mut_ptr(), 6), 0);
-                assert_eq!(sim_counters(s, &mut c), 0);
-            }
-            (state(model, s), q, qd, c)
-        };
+        let shown = |s| shown(model, s);
         let before = shown(sim);
         let mut diag = empty_diag();
         let n = before.0.1.len();
@@ -176,23 +189,11 @@ fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
         let mut y = before.0.1.clone();
         y[0] = 2.0;
         unsafe {
-            assert_eq!(sim_advance(sim, 5.0, &mut diag), Status::Contact.code());
-            assert!(diag.time > 0.12 && diag.time < 1.0, "{diag:?}");
-            assert_eq!(diag.place.kind, NEKTON_PLACE_LINK);
-            assert_eq!(shown(sim), before);
-            assert_eq!(sim_advance_dense(sim, 5.0, 6.0, &mut diag), Status::Contact.code());
-            assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_advance(sim, 0.0, &mut diag), Status::PastTime.code());
             assert_eq!(sim_set_step_limit(sim, 0), Status::OutOfRange.code());
-            // Of free flight the variable-step method makes one step.
-            if method.kind != NEKTON_METHOD_ADAMS {
-                assert_eq!(sim_set_step_limit(sim, 1), 0);
-                assert_eq!(sim_advance(sim, 0.3, &mut diag), Status::TooManySteps.code());
-                assert!(diag.time > 0.12 && diag.time < 0.3, "{diag:?}");
-            }
-            assert_eq!(sim_set_step_limit(sim, 1_000_000), 0);
             assert_eq!(sim_advance(sim, nan, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_advance(sim, f64::INFINITY, &mut diag), Status::NotFinite.code());
-            assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::BadStep.code());
+            assert_eq!(sim_advance_dense(sim, 0.3, 0.2, &mut diag), Status::PastTime.code());
             assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n, &mut diag), Status::Contact.code());
             assert_eq!(sim_set_state(sim, nan, y.as_ptr(), n, &mut diag), Status::NotFinite.code());
             assert_eq!(sim_set_state(sim, 0.0, y.as_ptr(), n - 1, &mut diag), Status::Length.code());
@@ -234,6 +235,67 @@ fn calls_that_fail_leave_the_simulation_bit_for_bit_as_it_was() {
         }
         assert_eq!(shown(sim), shown(twin));
     }
+}
+
+#[test]
+fn an_advance_that_fails_keeps_the_steps_that_it_made_and_a_step_that_fails_nothing() {
+    for method in every_method() {
+        let (_model_memory, model) = collision();
+        let (_memory, sim) = simulate(model, &method);
+        let mut diag = empty_diag();
+        let on_course = |t: f64| {
+            let ((time, _), q, ..) = shown(model, sim);
+            assert!(time == t && (q[0] - t).abs() < 1e-12 && (q[3] - (2.0 - t)).abs() < 1e-12, "{t} {time} {q:?}");
+        };
+        unsafe {
+            assert_eq!(sim_advance(sim, 0.1, &mut diag), 0);
+            assert_eq!(sim_advance(sim, 5.0, &mut diag), Status::Contact.code());
+            assert_eq!(diag.place.kind, NEKTON_PLACE_LINK);
+            assert!(diag.time > 0.1 && diag.time < 0.5, "{diag:?}");
+            on_course(diag.time);
+            if method.kind != NEKTON_METHOD_ADAMS {
+                assert!(diag.time > 0.485);
+                let before = shown(model, sim);
+                assert_eq!(sim_step(sim, &mut diag), Status::Contact.code());
+                assert_eq!(sim_advance(sim, 5.0, &mut diag), Status::Contact.code());
+                assert_eq!(shown(model, sim), before);
+                assert_eq!(sim_advance(sim, 0.495, &mut diag), 0);
+                on_course(0.495);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_advance_cut_off_by_the_limit_of_steps_goes_on_as_if_it_had_not_been() {
+    with_scene(|def, _, _| {
+        let (_model_memory, model) = compile(def);
+        // How many steps the variable-step method takes is not known before.
+        let (_a, whole) = simulate(model, &adams());
+        let (_b, parts) = simulate(model, &adams());
+        let (mut diag, mut cut, mut last) = (empty_diag(), 0, 0.0);
+        unsafe {
+            assert_eq!(sim_advance(whole, 0.2, null_mut()), 0);
+            assert_eq!(sim_set_step_limit(parts, 3), 0);
+            while sim_advance(parts, 0.2, &mut diag) != 0 {
+                assert_eq!(diag.status, Status::TooManySteps.code());
+                assert!(diag.time > last && diag.time < 0.2 && cut < 100, "{diag:?}");
+                assert_eq!(state(model, parts).0, diag.time);
+                (last, cut) = (diag.time, cut + 1);
+            }
+        }
+        assert!(cut > 0);
+        assert_eq!(shown(model, parts), shown(model, whole));
+        // Of fixed steps it is: nothing is begun that would not be finished, and both numbers are told.
+        for method in &every_method()[..3] {
+            let (_memory, sim) = simulate(model, method);
+            unsafe {
+                assert_eq!(sim_set_step_limit(sim, 3), 0);
+                assert_eq!(sim_advance(sim, 0.2, &mut diag), Status::TooManySteps.code());
+                assert_eq!((diag.value, diag.limit, diag.time, state(model, sim).0), (20.0, 3.0, 0.0, 0.0));
+            }
+        }
+    });
 }
 
 #[test]
@@ -292,8 +354,8 @@ fn objects_from_the_heap_work_and_are_freed() {
 #[test]
 fn texts_say_what_where_and_which_value() {
     let text = |diag: &nekton_diag| {
-        let mut buffer = [1u8; 200];
-        unsafe { nekton_ffi::shared::nekton_diag_text(diag, buffer.as_mut_ptr().cast(), 200) };
+        let mut buffer = [1u8; 256];
+        unsafe { nekton_ffi::shared::nekton_diag_text(diag, buffer.as_mut_ptr().cast(), 256) };
         String::from_utf8(buffer.iter().copied().take_while(|b| *b != 0).collect()).unwrap()
     };
     with_scene(|def, _, links| {
@@ -317,6 +379,18 @@ fn texts_say_what_where_and_which_value() {
         for value in [f64::MAX, f64::MIN_POSITIVE, 5e-324, 0.0, -0.0] {
             diag.value = value;
             text(&diag);
+        }
+    });
+    with_scene(|def, _, _| {
+        let (_model_memory, model) = compile(def);
+        let (_memory, sim) = simulate(model, &fixed(NEKTON_METHOD_RK4));
+        let mut diag = empty_diag();
+        unsafe {
+            assert_eq!(sim_advance(sim, 1e6, &mut diag), Status::TooManySteps.code());
+            assert!(text(&diag).ends_with(" (steps = 1.00000e8 beside 1.00000e6) at t = 0"), "{}", text(&diag));
+            assert_eq!(sim_advance(sim, 0.5, &mut diag), 0);
+            assert_eq!(sim_advance(sim, 0.25, &mut diag), Status::PastTime.code());
+            assert!(text(&diag).ends_with(" (t = 2.50000e-1 beside 5.00000e-1) at t = 5.00000e-1"), "{}", text(&diag));
         }
     });
     for status in Status::ALL {

@@ -39,24 +39,46 @@ fn a_scene_of_another_version_or_size_is_refused() {
         let address = def.get().wrapping_byte_add(4);
         refused(address, Status::Misaligned, SCENE, "def");
     });
-    with_scene(|def, _, _| {
-        def.abi_version += 1;
-        refused(def.get(), Status::AbiVersion, SCENE, "abi_version");
-    });
-    with_scene(|def, _, _| {
-        def.struct_size -= 8;
-        refused(def.get(), Status::AbiVersion, SCENE, "struct_size");
-    });
-    let mut def = scene();
-    let size = size_of::<SceneDef<f64>>();
-    unsafe {
-        assert_eq!(scene_def_init(&mut def, size + 8, 1), Status::AbiVersion.code());
-        assert_eq!(scene_def_init(&mut def, size, 2), Status::AbiVersion.code());
-        assert_eq!(scene_def_init(null_mut(), size, 1), Status::NullPointer.code());
-        assert_eq!(wall_def_init(null_mut()), Status::NullPointer.code());
-        assert_eq!(body_def_init(null_mut()), Status::NullPointer.code());
-        assert_eq!(link_def_init(null_mut()), Status::NullPointer.code());
+    // Of the first version of the interface, whatever its size.
+    for (version, size) in [(1, 0), (1, 8), (3, 0)] {
+        with_scene(|def, _, _| {
+            (def.abi_version, def.struct_size) = (version, def.struct_size + size);
+            refused(def.get(), Status::AbiVersion, SCENE, "abi_version");
+        });
     }
+    for wrong in [1_u32.wrapping_neg(), 4, 8] {
+        with_scene(|def, _, _| {
+            def.struct_size = def.struct_size.wrapping_sub(wrong).max(4);
+            refused(def.get(), Status::AbiVersion, SCENE, "struct_size");
+        });
+    }
+    with_scene(|def, _, _| {
+        def.struct_size = 0;
+        refused(def.get(), Status::AbiVersion, SCENE, "call nekton_scene_def_init");
+    });
+    macro_rules! init {
+        ($init:ident, $definition:ty) => {
+            let mut def = std::mem::MaybeUninit::<$definition>::uninit();
+            let size = size_of::<$definition>();
+            for (at, size, version, status) in [
+                (null_mut(), size, 2, Status::NullPointer),
+                (def.as_mut_ptr().wrapping_byte_add(1), size, 2, Status::Misaligned),
+                (def.as_mut_ptr(), size, 1, Status::AbiVersion),
+                (def.as_mut_ptr(), size, 3, Status::AbiVersion),
+                (def.as_mut_ptr(), 0, 2, Status::AbiVersion),
+                (def.as_mut_ptr(), size - 8, 2, Status::AbiVersion),
+                (def.as_mut_ptr(), size + 1, 2, Status::AbiVersion),
+                (def.as_mut_ptr(), usize::MAX & !7, 2, Status::AbiVersion),
+            ] {
+                assert_eq!(unsafe { $init(at, size, version) }, status.code(), "{size} {version}");
+            }
+        };
+    }
+    init!(scene_def_init, SceneDef<f64>);
+    init!(wall_def_init, WallDef<f64>);
+    init!(body_def_init, BodyDef<f64>);
+    init!(link_def_init, LinkDef<f64>);
+    init!(method_init, MethodDef<f64>);
 }
 
 #[test]
@@ -267,6 +289,13 @@ fn memory_that_is_null_misaligned_or_short_is_refused_untouched() {
             (MethodDef { step: f64::NAN, ..fixed(NEKTON_METHOD_ABM4) }, Status::BadStep),
             (MethodDef { relative: f64::NAN, ..adams() }, Status::BadTolerance),
             (MethodDef { absolute: 0.0, ..adams() }, Status::BadTolerance),
+            (MethodDef { max_step: -0.1, ..adams() }, Status::BadStep),
+            (MethodDef { max_step: f64::NAN, ..adams() }, Status::BadStep),
+            (MethodDef { first_step: f64::INFINITY, ..adams() }, Status::BadStep),
+            (MethodDef { max_step: 0.1, ..fixed(NEKTON_METHOD_RK4) }, Status::OutOfRange),
+            (MethodDef { first_step: 0.1, ..fixed(NEKTON_METHOD_ABM4) }, Status::OutOfRange),
+            (MethodDef { first_step: f64::NAN, ..fixed(NEKTON_METHOD_GAUSS6) }, Status::OutOfRange),
+            (MethodDef { struct_size: 0, ..adams() }, Status::AbiVersion),
         ] {
             let got = unsafe { sim_init(first.cast(), need.size, model, &method, &mut sim, &mut diag) };
             assert_eq!(got, status.code());

@@ -53,7 +53,7 @@ macro_rules! precision {
             use super::{Guarded, check_report};
             use crate::Reached;
             use crate::bytes::Bytes;
-            use crate::scene::{Definition, Number, zeroed};
+            use crate::scene::{Definition, Number, own_size, zeroed};
             use core::ptr::{null, null_mut};
             use nekton_ffi::shared::NEKTON_ABI_VERSION;
             use nekton_ffi::types::*;
@@ -79,7 +79,7 @@ macro_rules! precision {
 
             /// Runs the bytes.
             pub fn run(bytes: &mut Bytes<'_>) -> Reached {
-                let definition = Definition::<R>::new(bytes, size_of::<SceneDef<R>>(), NEKTON_ABI_VERSION);
+                let definition = Definition::<R>::new(bytes, NEKTON_ABI_VERSION);
                 let def = &raw const definition.def;
                 let mut diag = zeroed::<nekton_diag>();
                 let mut req = nekton_req::default();
@@ -105,10 +105,13 @@ macro_rules! precision {
                     let mut plan = zeroed::<nekton_plan>();
                     assert!(model_plan(model, &mut plan) >= 0 && plan.model_bytes == req.size);
                     let method = MethodDef {
+                        struct_size: own_size::<MethodDef<R>>(bytes),
                         kind: if bytes.chance(3) { bytes.kind(6) } else { 1 + bytes.below(4) as i32 },
                         step: number(bytes, 0.05),
                         relative: number(bytes, 1e-4),
                         absolute: number(bytes, 1e-4),
+                        max_step: if bytes.below(8) == 0 { number(bytes, 0.05) } else { 0.0 },
+                        first_step: if bytes.below(8) == 0 { number(bytes, 0.001) } else { 0.0 },
                     };
                     if !check_report(sim_req(model, &method, &mut req, &mut diag), &diag) || req.size > LARGEST {
                         return Reached::Model;
@@ -178,6 +181,18 @@ macro_rules! precision {
                     done
                 }
 
+                /// Advances to `end`; if it fails, the steps until then are kept, and nothing is marked by a call without one.
+                unsafe fn advancing(&self, end: R, action: impl FnOnce(*mut SimHandle<R>, &mut nekton_diag) -> nekton_status) -> bool {
+                    let mut diag = zeroed::<nekton_diag>();
+                    // SAFETY (all): a live simulation.
+                    let (before, from) = unsafe { (self.seen(self.sim), self.now()) };
+                    let done = check_report(action(self.sim, &mut diag), &diag);
+                    let (after, to) = unsafe { (self.seen(self.sim), self.now()) };
+                    let part = from < to && to <= end && diag.time == f64::from(to);
+                    assert!(done && to <= end || !done && (part || before == after), "a call failed and left its marks");
+                    done
+                }
+
                 unsafe fn now(&self) -> R {
                     let mut t = R::NAN;
                     // SAFETY: a live simulation.
@@ -195,12 +210,12 @@ macro_rules! precision {
                             3 => {
                                 let by = number(bytes, 0.1);
                                 let end = self.now() + by;
-                                self.moving(|sim, diag| sim_advance(sim, end, diag))
+                                self.advancing(end, |sim, diag| sim_advance(sim, end, diag))
                             }
                             4 => {
                                 let (by, more) = (number(bytes, 0.05), number(bytes, 0.1));
                                 let out = self.now() + by;
-                                self.moving(|sim, diag| sim_advance_dense(sim, out, out + more, diag))
+                                self.advancing(out + more, |sim, diag| sim_advance_dense(sim, out, out + more, diag))
                             }
                             5 => {
                                 let mut t = 0.0;

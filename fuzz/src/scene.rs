@@ -117,6 +117,7 @@ impl<R: Number> Store<R> {
     fn wall(&mut self, bytes: &mut Bytes<'_>, size: f64, place: [f64; 2]) -> WallDef<R> {
         WallDef {
             shape: self.shape(bytes, size),
+            struct_size: own_size::<WallDef<R>>(bytes),
             position: place.map(|x| R::of(bytes.real(x))),
             angle: R::of(bytes.real(0.3)),
             nodes: nodes(bytes),
@@ -149,11 +150,22 @@ impl<R: Number> Store<R> {
         }
         link.circulation = R::of(if bytes.below(4) == 0 { bytes.real(0.5) } else { 0.0 });
         (link.mass_kind, link.joint, link.drive) = (bytes.kind(2), bytes.kind(2), bytes.kind(3));
+        link.struct_size = own_size::<LinkDef<R>>(bytes);
         link.nodes = nodes(bytes);
         link.shape = self.shape(bytes, 1.0);
         link.signal = self.signal(bytes);
         link
     }
+}
+
+/// The size of a definition, or rubbish by which nothing may be read.
+pub fn own_size<T>(bytes: &mut Bytes<'_>) -> u32 {
+    let own = size_of::<T>() as u32;
+    if !bytes.chance(2) {
+        return own;
+    }
+    // A newer caller's size would be believed.
+    Some(bytes.word() as u32).filter(|size| *size <= own || *size > 4096).unwrap_or(0)
 }
 
 fn nodes(bytes: &mut Bytes<'_>) -> usize {
@@ -165,8 +177,8 @@ fn nodes(bytes: &mut Bytes<'_>) -> usize {
 }
 
 impl<R: Number> Definition<R> {
-    /// Reads a definition. `size` and `version` are those that the library asks for.
-    pub fn new(bytes: &mut Bytes<'_>, size: usize, version: u32) -> Self {
+    /// Reads a definition. `version` is the one that the library asks for.
+    pub fn new(bytes: &mut Bytes<'_>, version: u32) -> Self {
         let mut store = Store { points: Vec::new(), harmonics: Vec::new(), rows: Vec::new() };
         let tank: Vec<_> = (0..bytes.below(2)).map(|_| store.wall(bytes, 12.0, [2.0, 0.0])).collect();
         let obstacles = (0..bytes.below(3)).map(|i| store.wall(bytes, 0.7, [3.0 * i as f64, 3.2]));
@@ -179,6 +191,7 @@ impl<R: Number> Definition<R> {
             links.push((0..chain).map(|l| store.link(bytes, l)).collect());
             let real = |bytes: &mut Bytes<'_>, x: f64| R::of(bytes.real(x));
             bodies.push(BodyDef {
+                struct_size: own_size::<BodyDef<R>>(bytes),
                 pose: [real(bytes, 4.0 * b as f64), real(bytes, 0.1), real(bytes, 1.5)],
                 velocity: [real(bytes, 0.2), real(bytes, -0.1), real(bytes, 0.3)],
                 root: if bytes.below(3) == 0 { bytes.kind(3) } else { NEKTON_ROOT_FREE },
@@ -192,7 +205,7 @@ impl<R: Number> Definition<R> {
         }
         let repulsion = if bytes.below(2) == 0 { 0.0 } else { bytes.real(0.01) };
         let def = SceneDef {
-            struct_size: if bytes.chance(2) { bytes.word() as u32 } else { size as u32 },
+            struct_size: own_size::<SceneDef<R>>(bytes),
             abi_version: if bytes.chance(2) { bytes.word() as u32 } else { version },
             fluid_density: R::of(bytes.real(1.0)),
             gravity: R::of(if bytes.below(2) == 0 { 0.0 } else { bytes.real(9.81) }),

@@ -31,6 +31,7 @@ template <class R> struct Api;
         static constexpr auto wall_init = &P##_wall_def_init;                                                                  \
         static constexpr auto body_init = &P##_body_def_init;                                                                  \
         static constexpr auto link_init = &P##_link_def_init;                                                                  \
+        static constexpr auto method_init = &P##_method_init;                                                                  \
         static constexpr auto model_req = &P##_model_req;                                                                      \
         static constexpr auto model_init = &P##_model_init;                                                                    \
         static constexpr auto model_create = &P##_model_create;                                                                \

@@ -8,24 +8,54 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 namespace nekton {
 
-/** How a simulation is integrated in time. */
+namespace detail {
+
+/** Fills a definition with defaults and its size. */
+template <class Def> void filled(nekton_status (*init)(Def *, std::size_t, std::uint32_t), Def *def)
+{
+    done(init(def, sizeof(Def), NEKTON_ABI_VERSION));
+}
+
+} // namespace detail
+
+/** How a simulation is integrated in time; all fields of nekton_method. */
 template <class R> struct BasicMethod : detail::Api<R>::Method {
+    /** Variable order and step, both tolerances 1e-9 (single precision: 1e-4). */
+    BasicMethod() { detail::filled<Def>(detail::Api<R>::method_init, this); }
     /** Classical Runge-Kutta of order 4 with a fixed step. */
-    static BasicMethod rk4(R step) noexcept { return {{NEKTON_METHOD_RK4, step, 0, 0}}; }
+    static BasicMethod rk4(R step) { return fixed(NEKTON_METHOD_RK4, step); }
     /** Adams-Bashforth-Moulton of order 4 with a fixed step. */
-    static BasicMethod abm4(R step) noexcept { return {{NEKTON_METHOD_ABM4, step, 0, 0}}; }
+    static BasicMethod abm4(R step) { return fixed(NEKTON_METHOD_ABM4, step); }
     /** Implicit Gauss-Legendre of order 6 with a fixed step: the energy does not drift. */
-    static BasicMethod gauss6(R step) noexcept { return {{NEKTON_METHOD_GAUSS6, step, 0, 0}}; }
-    /** Variable order and step; both tolerances. */
-    static BasicMethod adams(R tolerance) noexcept { return {{NEKTON_METHOD_ADAMS, 0, tolerance, tolerance}}; }
+    static BasicMethod gauss6(R step) { return fixed(NEKTON_METHOD_GAUSS6, step); }
+    /** Variable order and step; both tolerances, the longest step (0: none) and the first one to be tried (0: chosen). */
+    static BasicMethod adams(R tolerance, R max_step = 0, R first_step = 0)
+    {
+        BasicMethod method;
+        method.relative = method.absolute = tolerance;
+        method.max_step = max_step;
+        method.first_step = first_step;
+        return method;
+    }
+
+private:
+    using Def = typename detail::Api<R>::Method;
+    static BasicMethod fixed(std::int32_t kind, R step)
+    {
+        BasicMethod method;
+        method.kind = kind;
+        method.step = step;
+        return method;
+    }
 };
 
 /** A link definition, filled with defaults; all fields of nekton_link_def. */
 template <class R> struct BasicLink : detail::Api<R>::Link {
-    BasicLink() { detail::done(detail::Api<R>::link_init(this)); }
+    BasicLink() { detail::filled<typename detail::Api<R>::Link>(detail::Api<R>::link_init, this); }
     /** An ellipse of semi-axes a along x and b along y. */
     static BasicLink ellipse(R a, R b)
     {
@@ -66,12 +96,12 @@ template <class R> struct BasicLink : detail::Api<R>::Link {
 
 /** A wall definition (tank or obstacle), filled with defaults; all fields of nekton_wall_def. */
 template <class R> struct BasicWall : detail::Api<R>::Wall {
-    BasicWall() { detail::done(detail::Api<R>::wall_init(this)); }
+    BasicWall() { detail::filled<typename detail::Api<R>::Wall>(detail::Api<R>::wall_init, this); }
 };
 
 /** A body definition, filled with defaults; all fields of nekton_body_def. Its links must stay until the model is made. */
 template <class R> struct BasicBody : detail::Api<R>::Body {
-    BasicBody() { detail::done(detail::Api<R>::body_init(this)); }
+    BasicBody() { detail::filled<typename detail::Api<R>::Body>(detail::Api<R>::body_init, this); }
     explicit BasicBody(const BasicLink<R> &link) : BasicBody(Span<const BasicLink<R>>(&link, 1)) {}
     explicit BasicBody(BasicLink<R> &&) = delete; // would be gone too soon
     explicit BasicBody(Span<const BasicLink<R>> all) : BasicBody()
@@ -85,8 +115,7 @@ template <class R> struct BasicBody : detail::Api<R>::Body {
 template <class R> struct BasicScene : detail::Api<R>::Scene {
     BasicScene()
     {
-        using Def = typename detail::Api<R>::Scene;
-        detail::done(detail::Api<R>::scene_init(this, sizeof(Def), NEKTON_ABI_VERSION));
+        detail::filled<typename detail::Api<R>::Scene>(detail::Api<R>::scene_init, this);
     }
     explicit BasicScene(const BasicBody<R> &body) : BasicScene(Span<const BasicBody<R>>(&body, 1)) {}
     explicit BasicScene(BasicBody<R> &&) = delete; // would be gone too soon

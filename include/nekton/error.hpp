@@ -26,7 +26,7 @@ public:
 
 private:
     nekton_diag diag_;
-    char text_[160] = {};
+    char text_[256] = {};
 };
 #endif
 
@@ -40,7 +40,7 @@ inline nekton_diag plain(nekton_status status) noexcept
     diag.status = status;
     diag.place = diag.other = nowhere;
     diag.item = -1;
-    diag.value = diag.time = std::numeric_limits<double>::quiet_NaN();
+    diag.value = diag.limit = diag.time = std::numeric_limits<double>::quiet_NaN();
     return diag;
 }
 

@@ -15,7 +15,7 @@
 
 namespace nekton {
 
-/** A simulation of a model. One thread at a time, even to read it. Moves; copies of the state by copy_from. */
+/** A simulation of a model. One thread at a time, even to read it (else NEKTON_E_BUSY). Moves; copies of the state by copy_from. */
 template <class R> class BasicSim {
     using Api = detail::Api<R>;
 

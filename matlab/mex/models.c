@@ -15,13 +15,15 @@ static void create(call *c)
     nekton_scene_def scene;
     nekton_method method;
     nekton_diag diag;
-    memset(&method, 0, sizeof method);
+    check(nekton_method_init(&method), NULL, "arg");
     read_scene(c->prhs[0], &scene);
     method.kind = word(c->prhs[1], kinds, COUNT(kinds), "method");
-    const double *x = numbers(c->prhs[2], 3, "step and tolerances");
+    const double *x = numbers(c->prhs[2], 5, "step, tolerances, longest and first step");
     method.step = x[0];
     method.relative = x[1];
     method.absolute = x[2];
+    method.max_step = x[3];
+    method.first_step = x[4];
     object *o = free_slot();
     /* What may fail for lack of memory comes before the library's objects exist. */
     mxArray *out = mxCreateNumericMatrix(1, 1, mxUINT64_CLASS, mxREAL);

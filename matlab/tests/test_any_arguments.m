@@ -5,13 +5,13 @@ commands = {'create', 'free', 'live', 'plan', 'links', 'joints', 'notices', 'out
     'impulse', 'resolution', 'indicators', 'time_error', 'gap', 'counters', 'accelerations', 'mass_matrix', 'added_mass', 'christoffel', 'buoyancy', ...
     'repulsion', 'circulation', 'gyroscopic'};
 scene = nekton_scene(swimmer('control'));
-method = {'adams', [0 1e-6 1e-6]};
+method = {'adams', [0 1e-6 1e-6 0 0]};
 broken = scene;
 broken.bodies.links = 3;
 hollow = scene;
 hollow.bodies.links(1).shape = [];
 things = {[], {}, '', 'x', 'link', 'adams', 0, 1, -1, NaN, Inf, 1e300, 1i, single(1), int8(1), true, sparse(1), uint64(0), ...
-    uint64(1), zeros(0, 3), [0 1e-6 1e-6], [1 0], [0.1 0 0], ones(5, 1), ones(2, 2, 2), struct(), struct('bodies', []), ...
+    uint64(1), zeros(0, 3), [0 1e-6 1e-6 0 0], [1 0], [0.1 0 0 0 0], ones(5, 1), ones(2, 2, 2), struct(), struct('bodies', []), ...
     {1, 2}, @sin, scene, broken, hollow, NaN(5, 1), [struct('a', 1), struct('a', 2)]};
 rand('twister', 1);
 alive = {};

@@ -1,17 +1,17 @@
 function test_arguments()
 % Wrong class, size and values of arguments are refused by name and change nothing.
 mex = @nekton_mex;
-method = {'adams', [0 1e-9 1e-9]};
+method = {'adams', [0 1e-9 1e-9 0 0]};
 good = nekton_scene(eggs());
 raises('nekton:arg:count', mex);
 raises('nekton:arg:text', mex, 3);
 raises('nekton:arg:command', mex, 'fly');
 raises('nekton:arg:count', mex, 'create', good);
 raises('nekton:scene:class', mex, 'create', 5, method{:});
-raises('nekton:arg:word', mex, 'create', good, 'euler', [0 1 1]);
+raises('nekton:arg:word', mex, 'create', good, 'euler', [0 1 1 0 0]);
 raises('nekton:arg:size', mex, 'create', good, 'adams', 1);
-raises('nekton:scene:BadTolerance', mex, 'create', good, 'adams', [0 0 0]);
-raises('nekton:scene:BadStep', mex, 'create', good, 'rk4', [-1 0 0]);
+raises('nekton:scene:BadTolerance', mex, 'create', good, 'adams', [0 0 0 0 0]);
+raises('nekton:scene:BadStep', mex, 'create', good, 'rk4', [-1 0 0 0 0]);
 raises('nekton:scene:EmptyScene', mex, 'create', struct('gravity', 1), method{:});
 for field = {'fluid_density', 'gravity'}
     for bad = {single(1), 'x', {1}, 1i, sparse(1), int32(1), true}
@@ -63,7 +63,7 @@ raises('nekton:arg:class', @() sim.advance('x'));
 raises('nekton:arg:size', @() sim.advance([1 2]));
 raises('nekton:arg:finite', @() sim.advance(NaN));
 raises('nekton:arg:finite', @() sim.advance(Inf));
-raises('nekton:sim:BadStep', @() sim.advance(0.4));
+raises('nekton:sim:PastTime', @() sim.advance(0.4));
 raises('nekton:arg:size', @() sim.rhs(0, [1 2 3]));
 raises('nekton:arg:class', @() sim.rhs(0, single(y)));
 raises('nekton:arg:finite', @() sim.rhs(0, y * NaN));

@@ -17,7 +17,7 @@ assert(count() == 0);
 raises('nekton:handle:stale', @() one.step());
 clear one
 
-method = {'adams', [0 1e-9 1e-9]};
+method = {'adams', [0 1e-9 1e-9 0 0]};
 scene = nekton_scene(eggs());
 h = nekton_mex('create', scene, method{:});
 assert(isa(h, 'uint64') && mislocked('nekton_mex'));
@@ -47,7 +47,7 @@ if exist('OCTAVE_VERSION', 'builtin')
     here = fileparts(fileparts(mfilename('fullpath')));
     code = ['addpath(pwd, ''tests''); s = Nekton(eggs()); s.step(); clear all; ' ...
         'assert(nekton_mex(''live'') == 0); s = Nekton(eggs()); s.step(); ' ...
-        'h = nekton_mex(''create'', nekton_scene(eggs()), ''adams'', [0 1e-9 1e-9]); disp(''fine'')'];
+        'h = nekton_mex(''create'', nekton_scene(eggs()), ''adams'', [0 1e-9 1e-9 0 0]); disp(''fine'')'];
     program = fullfile(OCTAVE_HOME(), 'bin', 'octave-cli');
     [status, output] = system(sprintf('cd "%s" && "%s" --norc --no-history --quiet --eval "%s" 2>&1', here, program, code));
     assert(status == 0 && strcmp(strtrim(output), 'fine'), 'exit: status %d, %s', status, output);

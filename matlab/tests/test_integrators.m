@@ -10,6 +10,22 @@ for method = {'rk4', 'abm4', 'gauss6'}
     raises('nekton:sim:TooManySteps', @() sim.advance(1.0));
     near(sim.time, 0.5, 0);
     raises('nekton:arg:range', @() sim.setStepLimit(0));
+    for option = {'MaxStep', 'InitialStep'}
+        raises('nekton:scene:OutOfRange', @() Nekton(eggs(), 'method', method{1}, 'step', 0.02, option{1}, 0.1));
+    end
+end
+
+% The longest and the first step of adams.
+sim = Nekton(eggs(), 'MaxStep', 0.01, 'InitialStep', 1e-6);
+sim.step();
+near(sim.time, 1e-6, 1e-20);
+sim.advance(0.5);
+near(sim.positions, exact.positions, 1e-6);
+assert(sim.counters().steps >= 51);
+for option = {'MaxStep', 'InitialStep'}
+    raises('nekton:arg:range', @() Nekton(eggs(), option{1}, 0));
+    raises('nekton:arg:class', @() Nekton(eggs(), option{1}, 'long'));
+    raises('nekton:scene:BadStep', @() Nekton(eggs(), option{1}, -1));
 end
 
 % Estimated errors of time: no smaller than the true ones, and at most a thousand times as large.

@@ -34,6 +34,10 @@ template <class R> int run()
     body.velocity[2] = R(0.2);
     const nekton::BasicScene<R> scene(body);
     const auto method = nekton::BasicMethod<R>::rk4(R(0.1));
+    const auto careful = nekton::BasicMethod<R>::adams(R(1e-3), R(0.25), R(0.125));
+    CHECK(careful.kind == NEKTON_METHOD_ADAMS && careful.relative == R(1e-3) && careful.absolute == R(1e-3));
+    CHECK(careful.max_step == R(0.25) && careful.first_step == R(0.125) && careful.struct_size == sizeof careful);
+    CHECK(method.kind == NEKTON_METHOD_RK4 && method.max_step == R(0) && method.first_step == R(0));
 
     nekton::BasicModel<R> model(scene);
     nekton::BasicSim<R> sim(model, method);
@@ -65,7 +69,7 @@ template <class R> int run()
     R two[2];
 #ifdef NEKTON_NO_EXCEPTIONS
     CHECK(moved.positions(two) == NEKTON_E_LENGTH);
-    CHECK(moved.advance(R(0), &diag) == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP);
+    CHECK(moved.advance(R(0), &diag) == NEKTON_E_PAST_TIME && diag.status == NEKTON_E_PAST_TIME);
     CHECK(moved.rhs(R(0), two, q, &diag) == NEKTON_E_LENGTH);
     link.nodes = 7;
     nekton::BasicModel<R> refused(scene, &diag);
@@ -80,7 +84,7 @@ template <class R> int run()
     try {
         moved.advance(R(0), &diag);
     } catch (const nekton::Error &error) {
-        caught += error.status() == NEKTON_E_BAD_STEP && diag.status == NEKTON_E_BAD_STEP;
+        caught += error.status() == NEKTON_E_PAST_TIME && diag.status == NEKTON_E_PAST_TIME;
     }
     try {
         moved.rhs(R(0), two, q);

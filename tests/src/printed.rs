@@ -64,7 +64,7 @@ fn version_and_plan() -> Result<Lines> {
     assert_eq!(plan.formulation, Formulation::LockedMomentum);
     let counts = [plan.links, sim.model().joint_count(), 3 * plan.links, plan.state_len, plan.unknowns];
     // Version of the interface, heap; status, body, link and value of the error; formulation.
-    let mut lines: Lines = [1, 1, -5, 0, 2, 47, 2].into_iter().map(|n| vec![f64::from(n)]).collect();
+    let mut lines: Lines = [2, 1, -5, 0, 2, 47, 2].into_iter().map(|n| vec![f64::from(n)]).collect();
     lines.extend(counts.into_iter().chain([plan.right_hand_sides]).map(|n| vec![n as f64]));
     lines.extend([vec![plan.operations], vec![resolution.mass, resolution.force]]);
     Ok(lines)

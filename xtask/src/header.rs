@@ -57,7 +57,9 @@ fn twin() -> (PathBuf, String) {
     for line in rest.lines() {
         // Types and constants without precision keep their names, and so do names in comments of what has no twin.
         let mut line = line.replace("f64", "f32");
-        for group in ["scene_def_init", "wall_def_init", "body_def_init", "link_def_init", "model_", "sim_"] {
+        for group in
+            ["scene_def_init", "wall_def_init", "body_def_init", "link_def_init", "method_init", "model_", "sim_"]
+        {
             line = line.replace(&format!("nekton_{group}"), &format!("nekton32_{group}"));
         }
         text.push_str(&line);

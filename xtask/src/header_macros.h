@@ -69,3 +69,12 @@
      8 * NEKTON_P_MODEL_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded))
 #define NEKTON_SIM_BYTES(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded) \
     (1024 + 8 * NEKTON_P_SIM_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, channels, points, graded))
+
+/*
+ * Filled by their own size: nekton_link_def_init(&link). What is in the library is the function of the same name, which takes size and
+ * version too: (nekton_link_def_init)(&link, sizeof link, NEKTON_ABI_VERSION), as other languages call it.
+ */
+#define nekton_wall_def_init(def) nekton_wall_def_init((def), sizeof(nekton_wall_def), NEKTON_ABI_VERSION)
+#define nekton_body_def_init(def) nekton_body_def_init((def), sizeof(nekton_body_def), NEKTON_ABI_VERSION)
+#define nekton_link_def_init(def) nekton_link_def_init((def), sizeof(nekton_link_def), NEKTON_ABI_VERSION)
+#define nekton_method_init(def) nekton_method_init((def), sizeof(nekton_method), NEKTON_ABI_VERSION)

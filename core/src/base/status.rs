@@ -68,7 +68,7 @@ statuses! {
     Internal = -23, "an internal consistency check failed (please report it)";
     NullPointer = -24, "a pointer that must not be NULL is NULL";
     Misaligned = -25, "memory is not aligned as required";
-    AbiVersion = -26, "the caller was compiled for another version of the interface";
+    AbiVersion = -26, "not initialized, or compiled for another version of the interface";
     BadHandle = -27, "this is no object of this library: not initialized, freed, or its model was replaced";
     OutOfMemory = -28, "no memory could be had";
     UnknownKind = -29, "a kind or flag has no such value";

@@ -54,6 +54,8 @@ pub struct nekton_diag {
     pub item: i32,
     /// The offending value; NaN: none.
     pub value: f64,
+    /// What the value had to keep to (steps that are allowed, the present time); NaN: none.
+    pub limit: f64,
     /// Simulated time that was reached before the error, s; NaN where there is none.
     pub time: f64,
     /// Name of the offending quantity; empty: none.
@@ -220,7 +222,7 @@ pub struct GapOut<R> {
     pub second: nekton_place,
 }
 
-/// What a simulation did since its start. Calls that failed count nothing.
+/// What a simulation did since its start. A call that failed counts nothing but steps that it kept.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct nekton_counters {

@@ -1,4 +1,7 @@
 //! Plain data that the caller fills: scenes and methods. These comments are those of the header; ASCII only.
+//!
+//! Walls, links, bodies, scenes and methods begin with their size and grow at their end (sized.rs). What lies within them (shapes,
+//! signals, windows) never changes its size, or what follows it would move.
 
 /// Not set: refused.
 pub const NEKTON_SHAPE_NONE: i32 = 0;
@@ -97,18 +100,20 @@ pub struct SignalDef<R> {
     pub row_count: usize,
 }
 
-/// A fixed boundary: the tank or an obstacle.
+/// A fixed boundary: the tank or an obstacle. To be filled by nekton_wall_def_init first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct WallDef<R> {
+    /// sizeof of this struct; set by nekton_wall_def_init.
+    pub struct_size: u32,
     /// Outline.
     pub shape: ShapeDef<R>,
     /// Where the outline's own origin lies, m.
     pub position: [R; 2],
-    /// Turn about the outline's own origin, rad.
-    pub angle: R,
     /// Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes.
     pub nodes: usize,
+    /// Turn about the outline's own origin, rad.
+    pub angle: R,
     /// Circulation around an obstacle, m^2/s; must be 0 for the tank.
     pub circulation: R,
 }
@@ -130,10 +135,12 @@ pub const NEKTON_DRIVE_MOTION: i32 = 1;
 /// Moves by the torque signal(t) - stiffness (u - rest) - damping du/dt.
 pub const NEKTON_DRIVE_TORQUE: i32 = 2;
 
-/// One rigid part of a body, with the joint by which it hangs on its parent.
+/// One rigid part of a body, with the joint by which it hangs on its parent. To be filled by nekton_link_def_init first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct LinkDef<R> {
+    /// sizeof of this struct; set by nekton_link_def_init.
+    pub struct_size: u32,
     /// Outline, drawn in the link's own frame (any origin).
     pub shape: ShapeDef<R>,
     /// Nodes: even, 8 to 65536; 0: as many as the scene's tolerance takes.
@@ -166,14 +173,14 @@ pub struct LinkDef<R> {
     pub angle: R,
     /// Locked: the value of u, rad (slider: m).
     pub locked_value: R,
+    /// Torque: u of the unloaded spring.
+    pub rest: R,
     /// Motion: u(t). Torque: the applied torque, N (slider: force, N/m).
     pub signal: SignalDef<R>,
     /// Torque: spring constant, >= 0.
     pub stiffness: R,
     /// Torque: damping constant, >= 0.
     pub damping: R,
-    /// Torque: u of the unloaded spring.
-    pub rest: R,
     /// Torque: u and du/dt at the start.
     pub start: [R; 2],
 }
@@ -183,16 +190,18 @@ pub const NEKTON_ROOT_FREE: i32 = 0;
 /// x(t), y(t), theta(t) are given by the body's motion, added to its pose; its velocity is ignored.
 pub const NEKTON_ROOT_PRESCRIBED: i32 = 1;
 
-/// A body: a tree of links, of which the first is the root.
+/// A body: a tree of links, of which the first is the root. To be filled by nekton_body_def_init first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BodyDef<R> {
+    /// sizeof of this struct; set by nekton_body_def_init.
+    pub struct_size: u32,
+    /// NEKTON_ROOT_...
+    pub root: i32,
     /// x, y, theta: centre of mass and heading of the first link.
     pub pose: [R; 3],
     /// Their rates.
     pub velocity: [R; 3],
-    /// NEKTON_ROOT_...
-    pub root: i32,
     /// Prescribed root: x(t), y(t), theta(t).
     pub motion: [SignalDef<R>; 3],
     /// Links; the first has no parent, every other one a parent before it.
@@ -267,10 +276,12 @@ pub const NEKTON_METHOD_ADAMS: i32 = 3;
 /// archives for microcontrollers, unless they were built with the feature implicit.
 pub const NEKTON_METHOD_GAUSS6: i32 = 4;
 
-/// How a simulation is integrated in time.
+/// How a simulation is integrated in time. To be filled by nekton_method_init first.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct MethodDef<R> {
+    /// sizeof of this struct; set by nekton_method_init.
+    pub struct_size: u32,
     /// NEKTON_METHOD_...
     pub kind: i32,
     /// RK4, ABM4, GAUSS6: step, s.
@@ -279,4 +290,8 @@ pub struct MethodDef<R> {
     pub relative: R,
     /// ADAMS: absolute tolerance of each step.
     pub absolute: R,
+    /// ADAMS: longest step, s; 0: none. Must be 0 for a method of fixed steps.
+    pub max_step: R,
+    /// ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps.
+    pub first_step: R,
 }

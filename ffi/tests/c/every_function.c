@@ -81,7 +81,7 @@ int main(void) {
     nekton_sim *sim, *copy, *heap_sim;
     const nekton_model *same;
     nekton_method method;
-    memset(&method, 0, sizeof method);
+    MUST(nekton_method_init(&method));
     method.kind = NEKTON_METHOD_ABM4;
     method.step = (real)0.0078125;
     MUST(nekton_model_req(&def, &req, &diag));

@@ -126,7 +126,8 @@ static void try_one(size_t bodies, size_t joints, size_t nodes, size_t walls, si
         printf("%s\n", text);
     }
     check(status >= 0, "model_init");
-    nekton_method method = {0};
+    nekton_method method;
+    check(nekton_method_init(&method) == NEKTON_OK, "method");
     method.kind = NEKTON_METHOD_RK4;
     method.step = (real)0.01;
     check(nekton_sim_req(model, &method, &req, &diag) == NEKTON_OK, "sim_req");

@@ -2,6 +2,7 @@
 
 #![allow(dead_code, unused_imports)]
 
+use nekton_ffi::shared::NEKTON_ABI_VERSION;
 use nekton_ffi::types::*;
 
 /// Memory that begins on an 8-byte boundary.
@@ -16,7 +17,23 @@ pub fn what(diag: &nekton_diag) -> String {
 
 pub fn empty_diag() -> nekton_diag {
     let nowhere = nekton_place { kind: -7, index: -7, link: -7 };
-    nekton_diag { status: 77, place: nowhere, other: nowhere, item: -7, value: 0.0, time: 0.0, what: [1; 32] }
+    nekton_diag {
+        status: 77,
+        place: nowhere,
+        other: nowhere,
+        item: -7,
+        value: 0.0,
+        limit: 0.0,
+        time: 0.0,
+        what: [1; 32],
+    }
+}
+
+/// A struct after a function that fills it.
+pub fn filled<T>(fill: impl FnOnce(*mut T, usize) -> nekton_status) -> T {
+    let mut def = std::mem::MaybeUninit::uninit();
+    assert_eq!(fill(def.as_mut_ptr(), size_of::<T>()), 0);
+    unsafe { def.assume_init() }
 }
 
 /// Everything about one precision, under names that do not tell it.
@@ -28,39 +45,31 @@ macro_rules! precision {
             $( pub use nekton_ffi::$api::$long as $short; )*
 
             pub fn scene() -> SceneDef<Real> {
-                let mut def = std::mem::MaybeUninit::uninit();
-                let status = unsafe {
-                    scene_def_init(def.as_mut_ptr(), size_of::<SceneDef<Real>>(), nekton_ffi::shared::NEKTON_ABI_VERSION)
-                };
-                assert_eq!(status, 0);
-                unsafe { def.assume_init() }
+                filled(|def: *mut SceneDef<Real>, size| unsafe { scene_def_init(def, size, NEKTON_ABI_VERSION) })
             }
             pub fn wall() -> WallDef<Real> {
-                let mut def = std::mem::MaybeUninit::uninit();
-                assert_eq!(unsafe { wall_def_init(def.as_mut_ptr()) }, 0);
-                unsafe { def.assume_init() }
+                filled(|def: *mut WallDef<Real>, size| unsafe { wall_def_init(def, size, NEKTON_ABI_VERSION) })
             }
             pub fn body() -> BodyDef<Real> {
-                let mut def = std::mem::MaybeUninit::uninit();
-                assert_eq!(unsafe { body_def_init(def.as_mut_ptr()) }, 0);
-                unsafe { def.assume_init() }
+                filled(|def: *mut BodyDef<Real>, size| unsafe { body_def_init(def, size, NEKTON_ABI_VERSION) })
             }
             pub fn link() -> LinkDef<Real> {
-                let mut def = std::mem::MaybeUninit::uninit();
-                assert_eq!(unsafe { link_def_init(def.as_mut_ptr()) }, 0);
-                unsafe { def.assume_init() }
+                filled(|def: *mut LinkDef<Real>, size| unsafe { link_def_init(def, size, NEKTON_ABI_VERSION) })
             }
             pub fn ellipse(a: Real, b: Real) -> LinkDef<Real> {
                 let mut link = link();
                 (link.shape.kind, link.shape.a, link.shape.b, link.nodes) = (NEKTON_SHAPE_ELLIPSE, a, b, 32);
                 link
             }
+            pub fn method() -> MethodDef<Real> {
+                filled(|def: *mut MethodDef<Real>, size| unsafe { method_init(def, size, NEKTON_ABI_VERSION) })
+            }
             pub fn adams() -> MethodDef<Real> {
                 let tolerance = if size_of::<Real>() == 8 { 1e-8 } else { 1e-4 };
-                MethodDef { kind: NEKTON_METHOD_ADAMS, step: 0.0, relative: tolerance as Real, absolute: tolerance as Real }
+                MethodDef { relative: tolerance as Real, absolute: tolerance as Real, ..method() }
             }
             pub fn fixed(kind: i32) -> MethodDef<Real> {
-                MethodDef { kind, step: 0.01, relative: 0.0, absolute: 0.0 }
+                MethodDef { kind, step: 0.01, ..method() }
             }
 
             /// A model in memory of its own.
@@ -109,6 +118,7 @@ precision!(
     nekton_wall_def_init = wall_def_init,
     nekton_body_def_init = body_def_init,
     nekton_link_def_init = link_def_init,
+    nekton_method_init = method_init,
     nekton_model_req = model_req,
     nekton_model_init = model_init,
     nekton_model_create = model_create,
@@ -165,6 +175,7 @@ precision!(
     nekton32_wall_def_init = wall_def_init,
     nekton32_body_def_init = body_def_init,
     nekton32_link_def_init = link_def_init,
+    nekton32_method_init = method_init,
     nekton32_model_req = model_req,
     nekton32_model_init = model_init,
     nekton32_model_create = model_create,
