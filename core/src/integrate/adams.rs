@@ -31,6 +31,8 @@ pub struct Adams<R> {
     prepared: bool,
     /// Has it jumped since it was evaluated?
     jumped: bool,
+    /// Steps to come whose past reaches beyond a jump or a kink.
+    doubtful: usize,
     /// Length proposed for the next step; 0 if it is to be estimated.
     proposed: R,
     /// Order of the next step.
@@ -93,6 +95,7 @@ impl<R: Real> Adams<R> {
             time_rest: R::zero(),
             prepared: false,
             jumped: false,
+            doubtful: 0,
             proposed: R::zero(),
             order: 1,
             starting: true,
@@ -140,7 +143,7 @@ impl<R: Real> Adams<R> {
 
     /// Starts anew at the present state: to be called when the right-hand side has jumped.
     pub fn restart(&mut self) {
-        (self.prepared, self.jumped) = (false, false);
+        (self.prepared, self.jumped, self.doubtful) = (false, false, 0);
         self.forget();
     }
 
@@ -149,6 +152,13 @@ impl<R: Real> Adams<R> {
     /// estimate sees it, and order and step follow.
     pub fn jump(&mut self) {
         self.jumped = self.prepared;
+        self.kink();
+    }
+
+    /// The rate's derivative has jumped at the present time. Formulas of high order that look across a kink make errors of up to a
+    /// hundred times their estimates: until they no longer do, a step is judged as Euler's would be.
+    pub fn kink(&mut self) {
+        self.doubtful = self.order + 1;
     }
 
     /// Back to order 1 and a step to be estimated.
@@ -320,6 +330,9 @@ impl<R: Real> Adams<R> {
                             let wanted = (failures == 0 && step.abs() < length).then_some(length);
                             self.accept(&formula, &estimate, time, last, wanted, b);
                             self.jumped = system.jumps_at(self.time);
+                            if self.jumped || system.kinks_at(self.time, step) {
+                                self.kink();
+                            }
                             return Ok(());
                         }
                         Err(e) => (Some(e), R::lit(0.25)),
@@ -414,7 +427,10 @@ impl<R: Real> Adams<R> {
         }
         all_finite(b.trial, Status::NonFiniteState, "state")?;
 
-        let estimate = Estimate::new(formula, this, lower, lowest);
+        let mut estimate = Estimate::new(formula, this, lower, lowest);
+        if self.doubtful > 0 {
+            estimate.step = estimate.step.max(R::HALF * formula.step.abs() * this);
+        }
         all_finite(&[estimate.step, estimate.this], Status::NonFiniteState, "error estimate")?;
         Ok(estimate)
     }
@@ -450,6 +466,7 @@ impl<R: Real> Adams<R> {
         (self.last_step, self.last_order) = (formula.step, k);
         self.longest = self.longest.max(formula.step.abs());
         self.counters.steps += 1;
+        self.doubtful = self.doubtful.saturating_sub(1);
 
         self.starting &= !estimate.prefers_lower && k < MAX_ORDER;
         let factor = if self.starting {
@@ -463,7 +480,7 @@ impl<R: Real> Adams<R> {
         self.proposed = factor * formula.step.abs();
         if let Some(wanted) = wanted {
             // It was not for its error that the step was short.
-            self.proposed = self.proposed.max(wanted.min(R::lit(16.0) * formula.step.abs()));
+            self.proposed = self.proposed.max(wanted.min(R::lit(4.0) * formula.step.abs()));
         }
     }
 }

@@ -40,6 +40,11 @@ pub trait System<R> {
         None
     }
 
+    /// Whether the derivative of the rates jumps at `t`, by so much that it matters to a step of length `h`.
+    fn kinks_at(&self, _t: R, _h: R) -> bool {
+        false
+    }
+
     /// Whether the rates jump at `t`.
     fn jumps_at(&self, _t: R) -> bool {
         false

@@ -55,6 +55,11 @@ impl<'a, R: Real> Model<'a, R> {
         })
     }
 
+    /// Whether a drive is less smooth at `t`, by so much that it matters to a step of length `h`.
+    pub(crate) fn kinks_at(&self, t: R, h: R, channels: &[R]) -> bool {
+        self.moving().any(|(_, c, motion)| c.signal.kinks_at(motion, t, h, self.store, channels))
+    }
+
     /// The worst that a drive does at a time.
     pub(crate) fn jump_at(&self, t: R, channels: &[R]) -> (Jump, Option<usize>) {
         self.moving().fold((Jump::None, None), |(worst, by), (i, c, motion)| {

@@ -227,6 +227,14 @@ impl<R: Real> SignalRecord<R> {
         }
     }
 
+    /// Whether a table is less smooth at `t`, by so much that it matters to a step of length `h`.
+    pub(crate) fn kinks_at(&self, motion: bool, t: R, h: R, store: &[R], channels: &[R]) -> bool {
+        match self.kind {
+            Kind::Constant(_) | Kind::Harmonic(_) => false,
+            Kind::Table | Kind::Channel => self.rows(store, channels).kinks_at(motion, t, h),
+        }
+    }
+
     /// First time strictly within (t, end) at which something jumps.
     pub(crate) fn next_jump(&self, motion: bool, t: R, end: R, store: &[R], channels: &[R]) -> Option<R> {
         match self.kind {

@@ -52,6 +52,12 @@ impl<R: Real> Piece<R> {
         [u, v, a]
     }
 
+    /// d³u/dt³.
+    fn jerk(&self, t: R) -> R {
+        let ([_, _, c3, c4, c5], x) = (self.c, (t - self.t0) / self.h);
+        (R::lit(6.0) * c3 + x * (R::lit(24.0) * c4 + x * R::lit(60.0) * c5)) / (self.h * self.h * self.h)
+    }
+
     /// What drives: ü of a motion, the value of a torque.
     fn drives(&self, motion: bool, t: R) -> R {
         let [u, _, a] = self.evaluate(t);
@@ -163,12 +169,8 @@ impl<R: Real> Rows<'_, R> {
 
     /// By how much d³u/dt³ jumps at a row between two pieces.
     fn kink(&self, k: usize) -> R {
-        let (before, behind) = (self.piece(k.saturating_sub(1)), self.piece(k));
-        let cube = |piece: &Piece<R>| piece.h * piece.h * piece.h;
-        let [_, _, c3, c4, c5] = before.c;
-        let end = (R::lit(6.0) * c3 + R::lit(24.0) * c4 + R::lit(60.0) * c5) / cube(&before);
-        let [_, _, c3, ..] = behind.c;
-        (end - R::lit(6.0) * c3 / cube(&behind)).abs()
+        let t = self.time(k);
+        (self.piece(k.saturating_sub(1)).jerk(t) - self.piece(k).jerk(t)).abs()
     }
 
     /// What changes suddenly at a row: (value, rate, acceleration) before and after it.
@@ -222,18 +224,25 @@ impl<R: Real> Rows<'_, R> {
             None => self.rows_until(t),
         };
         let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
-        let h = end - t;
+        (first..last).take_while(|k| self.time(*k) < end).find(|k| self.matters(motion, *k, end - t)).map(|k| self.time(k))
+    }
+
+    /// Whether the row that a time means is such a one.
+    pub(super) fn kinks_at(&self, motion: bool, t: R, h: R) -> bool {
+        self.row_at(t).is_some_and(|k| self.matters(motion, self.of_one_time(k).0, h.abs()))
+    }
+
+    fn matters(&self, motion: bool, k: usize, h: R) -> bool {
+        let flat = |k: usize| self.piece(k).c.iter().all(|c| *c == R::zero());
+        if self.count() < 2 {
+            return false;
+        }
+        if k == 0 || k + 1 == self.count() {
+            return !flat(k.min(self.count() - 2));
+        }
         let size = |k: usize| if motion { self.row(k)[3].abs() } else { self.row(k)[1].abs() };
-        (first..last).take_while(|k| self.time(*k) < end).find(|k| {
-            let (row, flat) = (*k, |k: usize| self.piece(k).c.iter().all(|c| *c == R::zero()));
-            if row == 0 || row + 1 == self.count() {
-                return self.count() > 1 && !flat(row.saturating_sub(usize::from(row > 0)));
-            }
-            let jump = self.kink(row) * if motion { h } else { h * h * h };
-            let sizes = [row - 1, row, row + 1].map(size).into_iter().fold(R::zero(), R::max);
-            jump > R::lit(1e-3) * sizes
-        })
-        .map(|k| self.time(k))
+        let jump = self.kink(k) * if motion { h } else { h * h * h };
+        jump > R::lit(1e-3) * [k - 1, k, k + 1].map(size).into_iter().fold(R::zero(), R::max)
     }
 
     /// See [`crate::model::signal::SignalRecord::seen`]. O(rows in the step).
@@ -268,7 +277,7 @@ impl<R: Real> Rows<'_, R> {
             let allowed = part * first.abs().max(last.abs());
             let line = |s: R| first + (last - first) * ((s - t) / limit);
             let mut pieces = start.unwrap_or(0)..self.count().saturating_sub(1);
-            let unseen = pieces.by_ref().take_while(|k| self.time(*k) < end).find(|k| {
+            let unseen = pieces.by_ref().take_while(|k| end - self.time(*k) > self.slack(*k, end)).find(|k| {
                 let (from, to) = (self.time(*k).max(t), self.time(*k + 1).min(end));
                 if to - from <= self.slack(*k, end) {
                     return false;
@@ -281,12 +290,14 @@ impl<R: Real> Rows<'_, R> {
                 let allowed = allowed + piece.rounding(motion);
                 [0.0, 0.25, 0.5, 0.75, 1.0].into_iter().any(|x| {
                     let s = from + R::lit(x) * (to - from);
-                    !((piece.drives(motion, s) - line(s)).abs() <= allowed)
+                    (piece.drives(motion, s) - line(s)).abs() > allowed
                 })
             });
             let Some(k) = unseen else { break };
-            let before = self.time(k) - t;
-            limit = if before < limit { before.max(limit * R::HALF) } else { limit * R::HALF };
+            // To where its piece begins, else to where it ends.
+            let (begin, end) = (self.time(k) - t, self.time(k + 1) - t);
+            let corner = if begin > R::zero() { begin } else { end };
+            limit = if corner < limit { corner.max(limit * R::HALF) } else { limit * R::HALF };
             if t + limit <= t {
                 break;
             }
@@ -309,6 +320,21 @@ pub(crate) fn channel_jump<R: Real>(motion: bool, t: R, old: &[R], new: &[R]) ->
         after,
         [old, new].into_iter().filter(|rows| rows.time(1) > rows.time(0)).map(|rows| rows.piece(0)),
     )
+}
+
+/// Whether the slope of what drives (ü, or a torque) changes at `t` from one piece of a channel to the next, by more than a thousandth of
+/// its size over a piece.
+pub(crate) fn channel_kink<R: Real>(motion: bool, t: R, old: &[R], new: &[R]) -> bool {
+    let (old, new) = (Rows(old), Rows(new));
+    let slope = |rows: &Rows<'_, R>, at: Moment<R>| match rows.region(at) {
+        Region::Piece(k) if motion => rows.piece(k).jerk(at.t),
+        Region::Piece(k) => rows.piece(k).evaluate(at.t)[1],
+        _ => R::zero(),
+    };
+    let change = slope(&old, Moment { t, after: false }) - slope(&new, Moment { t, after: true });
+    let size = |rows: &Rows<'_, R>, k: usize| if motion { rows.row(k)[3].abs() } else { rows.row(k)[1].abs() };
+    let largest = [(&old, 0), (&old, 1), (&new, 0), (&new, 1)].into_iter().fold(R::zero(), |m, (rows, k)| m.max(size(rows, k)));
+    change.abs() * (new.time(1) - new.time(0)) > R::lit(1e-3) * largest
 }
 
 /// What kind of jump the difference of both sides is. Rounding is none, nor is a millionth of what the pieces beside it do in a motion's

@@ -5,7 +5,7 @@
 use crate::base::scalar::Real;
 use crate::model::Formulation;
 use crate::model::signal::{Jump, Seen};
-use crate::model::table::channel_jump;
+use crate::model::table::{channel_jump, channel_kink};
 use crate::simulation::sim::Sim;
 use crate::simulation::state::{Method, Missed, Watch};
 
@@ -70,6 +70,8 @@ impl<R: Real> Sim<'_, R> {
         } else if jump != Jump::None {
             self.progress.adams.jump();
             self.forget_rates();
+        } else if channel_kink(motion, t, old, new) {
+            self.progress.adams.kink();
         }
     }
 }

@@ -100,6 +100,10 @@ impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
         self.model.next_jump(t, end, self.evaluation.coordinates.channels).map(|(t, _)| t)
     }
 
+    fn kinks_at(&self, t: R, h: R) -> bool {
+        self.model.kinks_at(t, h, self.evaluation.coordinates.channels)
+    }
+
     fn jumps_at(&self, t: R) -> bool {
         self.model.jump_at(t, self.evaluation.coordinates.channels).0 != Jump::None
     }
