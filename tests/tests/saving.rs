@@ -334,6 +334,19 @@ fn bytes_that_somebody_made_up_are_refused_or_do_no_harm() {
 }
 
 #[test]
+fn a_simulation_is_not_viewed_with_another_model() {
+    let (own, equal, other) =
+        (model::<f64>(Case::Channels, 0.3), model(Case::Channels, 0.3), model(Case::Channels, 0.31));
+    let mut reals = vec![0.0; Sim::requirement(&own.view()).unwrap().reals];
+    let mut head = Sim::head(Method::Rk4 { step: 0.01 }).unwrap();
+    let view = |model: &ModelBuf<f64>, head: &mut _, reals: &mut _| Sim::view(model.view(), head, reals).map(|_| ());
+    assert_eq!(view(&own, &mut head, &mut reals).unwrap_err().status, Status::BadHandle);
+    Sim::init(own.view(), &mut head, &mut reals).unwrap();
+    view(&equal, &mut head, &mut reals).unwrap();
+    assert_eq!(view(&other, &mut head, &mut reals).unwrap_err().status, Status::BadHandle);
+}
+
+#[test]
 fn equal_scenes_have_equal_fingerprints_and_others_have_not() {
     let of = |case, gravity| model::<f64>(case, gravity).view().fingerprint();
     assert_eq!(of(Case::Channels, 0.3), of(Case::Channels, 0.3));
