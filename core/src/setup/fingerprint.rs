@@ -246,7 +246,13 @@ mod tests {
             mass: Mass<R>,
             joint: Option<Joint<'a, R>>,
         ) -> Link<'a, R> {
-            Link { shape, mass, nodes: self.pick(16, 18), circulation: self.x(0.3), joint: self.pick(joint, None) }
+            Link {
+                shape,
+                mass,
+                nodes: self.pick(16, 18),
+                circulation: self.x(0.3),
+                joint: joint.and_then(|j| self.pick(Some(j), None)),
+            }
         }
         fn wall<'a, R: Real>(&mut self, shape: Shape<'a, R>) -> Wall<'a, R> {
             Wall {
