@@ -44,6 +44,7 @@
 //! 3. **Step.** [`SimBuf::new`], or [`Sim::init`], begins a [`Sim`] with one [`Method`]: [`Sim::advance`] to a time, [`Sim::advance_dense`] for
 //!    output at many times, [`Sim::step`] for one step; [`Sim::set_state`] and [`Sim::set_channel`] from outside; [`Sim::rhs`] for an
 //!    integrator of your own. One model serves any number of simulations, one per thread.
+//!    [`Sim::save`] gives the simulation as bytes, from which [`Sim::load`] goes on bit for bit, in any process.
 //! 4. **Ask**, between steps. Vectors have 3 numbers per link (x, y, θ, or force along x, y and torque about the centre of
 //!    mass), matrices are 3n × 3n, column by column:
 //!

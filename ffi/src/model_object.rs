@@ -88,7 +88,8 @@ pub(crate) unsafe fn begin_model<'a, R: Real>(mem: *mut u8, need: &ModelRequirem
 impl<R: Real> ModelParts<'_, R> {
     /// Writes the head and marks the object as a model.
     pub(crate) unsafe fn finish(self, head: ModelHead<R>, owned: bool) -> Outcome<*mut ModelHandle<R>> {
-        let stamp = self.stamp(&head);
+        let m = &self.memory;
+        let stamp = Model::view(&head, m.links, m.coordinates, m.boundaries, m.reals).fingerprint();
         let object = ModelObject {
             mark: mark::<R>(MODEL_MARK),
             owned: u64::from(owned),
@@ -104,39 +105,6 @@ impl<R: Real> ModelParts<'_, R> {
         // SAFETY: checked memory; the records lie behind this struct.
         unsafe { self.mem.cast::<ModelObject<R>>().write(object) };
         Ok(self.mem.cast())
-    }
-
-    /// A number that differs between models that differ.
-    fn stamp(&self, head: &ModelHead<R>) -> u64 {
-        let m = &self.memory;
-        let model = Model::view(head, m.links, m.coordinates, m.boundaries, m.reals);
-        let plan = model.plan();
-        let mut stamp = 0xcbf2_9ce4_8422_2325_u64;
-        let mut add = |x: u64| stamp = (stamp ^ x).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(29);
-        for n in [
-            plan.links,
-            plan.walls,
-            plan.unknowns,
-            plan.free_coordinates,
-            plan.prescribed_coordinates,
-            plan.state_len,
-            self.need.reals,
-            model.channel_count(),
-            usize::from(plan.gravity),
-            usize::from(plan.repulsion),
-            usize::from(plan.circulation),
-        ] {
-            add(n as u64);
-        }
-        for x in m.reals.iter() {
-            add(x.to_f64().to_bits());
-        }
-        for l in (0..model.link_count()).filter_map(|i| model.link(i)) {
-            for x in [l.mass, l.inertia, l.area, l.centroid[0], l.centroid[1]] {
-                add(x.to_f64().to_bits());
-            }
-        }
-        stamp
     }
 }
 

@@ -20,6 +20,12 @@ pub trait Bits: Sized {
     /// 1/√x to 4 %, of a positive number.
     #[doc(hidden)]
     fn rough_rsqrt(self) -> Self;
+    /// Its bits, the lowest ones of the word.
+    #[doc(hidden)]
+    fn to_word(self) -> u64;
+    /// The number of these bits; higher ones are lost.
+    #[doc(hidden)]
+    fn from_word(word: u64) -> Self;
 }
 
 macro_rules! bits {
@@ -44,6 +50,14 @@ macro_rules! bits {
             #[inline(always)]
             fn rough_rsqrt(self) -> Self {
                 $t::from_bits(($magic as $u).wrapping_sub(self.to_bits() >> 1))
+            }
+            #[inline]
+            fn to_word(self) -> u64 {
+                u64::from(self.to_bits())
+            }
+            #[inline]
+            fn from_word(word: u64) -> Self {
+                $t::from_bits(word as $u)
             }
         }
     };

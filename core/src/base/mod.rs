@@ -2,8 +2,10 @@
 
 pub(crate) mod bits;
 pub(crate) mod complex;
+pub(crate) mod digest;
 pub(crate) mod elementary;
 pub(crate) mod features;
+pub(crate) mod fields;
 pub(crate) mod index;
 pub(crate) mod lanes;
 pub(crate) mod machine;

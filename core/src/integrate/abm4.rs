@@ -5,6 +5,7 @@
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::rk4::later_stages;
 use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::fields::Fields;
 use crate::base::memory::{buffers, copy, part};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
@@ -42,6 +43,13 @@ impl<R: Real> Abm4<R> {
     /// A new integrator.
     pub fn new() -> Self {
         Abm4 { past: FixedStep::new(), made: false }
+    }
+
+    /// Every field, in order.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>) {
+        let Abm4 { past, made } = self;
+        io.flag("made", made);
+        past.each(io, 3);
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.

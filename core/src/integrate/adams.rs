@@ -5,6 +5,7 @@
 use super::control::{Estimate, step_factor};
 use super::formula::{COLUMNS, Formula, MAX_ORDER, dense, moulton};
 use super::system::{Counters, System, all_finite, evaluate, finite, recoverable, same_length};
+use crate::base::fields::Fields;
 use crate::base::memory::{buffers, copy, part};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
@@ -120,6 +121,52 @@ impl<R: Real> Adams<R> {
         Ok(self)
     }
 
+    /// Every field, in order, of an integrator for `unknowns` unknowns that may not have begun.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>, unknowns: usize) {
+        let Adams {
+            relative,
+            absolute,
+            max_step,
+            first,
+            dim,
+            time,
+            time_rest,
+            prepared,
+            jumped,
+            proposed,
+            order,
+            starting,
+            last_step,
+            longest,
+            last_order,
+            equal_steps,
+            spans,
+            counters,
+        } = self;
+        io.finite("relative", relative);
+        io.finite("absolute", absolute);
+        io.finite("max_step", max_step);
+        io.at_least_zero("first", first);
+        let settings = Adams::new(*relative, *absolute, Some(*max_step));
+        io.require("tolerance", settings.is_ok() && first.is_finite());
+        io.count("dim", dim, unknowns);
+        io.require("dim", *dim == 0 || *dim == unknowns);
+        io.finite("time", time);
+        io.finite("time_rest", time_rest);
+        io.flag("prepared", prepared);
+        io.flag("jumped", jumped);
+        io.at_least_zero("proposed", proposed);
+        io.count("order", order, MAX_ORDER);
+        io.require("order", *order > 0);
+        io.flag("starting", starting);
+        io.finite("last_step", last_step);
+        io.at_least_zero("longest", longest);
+        io.count("last_order", last_order, MAX_ORDER);
+        io.count("equal_steps", equal_steps, COLUMNS);
+        spans.iter_mut().for_each(|span| io.real("spans", span));
+        counters.each(io);
+    }
+
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.
     pub fn memory_len(dim: usize) -> Option<usize> {
         Buffers::<R>::len(&dim)
@@ -205,6 +252,11 @@ impl<R: Real> Adams<R> {
     /// [`prepare`](Self::prepare)).
     pub fn rate<'m>(&self, memory: &'m [R]) -> &'m [R] {
         part(memory, self.dim, self.dim)
+    }
+
+    /// Number of unknowns since the last start; 0 before the first.
+    pub(crate) fn state_len(&self) -> usize {
+        self.dim
     }
 
     /// Length of the last step, signed; 0 after a start. The dense output is good from

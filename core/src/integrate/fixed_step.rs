@@ -2,6 +2,7 @@
 //!
 //! Tested by `integrate/tests/accuracy.rs`, `integrate/tests/robustness.rs`.
 
+use crate::base::fields::Fields;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::integrate::system::{Counters, System, all_finite, finite, same_length};
@@ -33,6 +34,16 @@ impl<R: Real> FixedStep<R> {
     /// Forgets the past rates.
     pub(super) fn jump(&mut self) {
         (self.known, self.estimated) = (0, false);
+    }
+
+    /// Every field, in order; at most `most` earlier steps are remembered.
+    pub(super) fn each(&mut self, io: &mut impl Fields<R>, most: usize) {
+        let FixedStep { step, continues, known, estimated, counters } = self;
+        io.finite("step", step);
+        io.flag("continues", continues);
+        io.count("known", known, most);
+        io.flag("estimated", estimated);
+        counters.each(io);
     }
 
     /// Begins a step: clears `rest`, the part of the state that it cannot hold, after a start; returns how many earlier rates

@@ -4,6 +4,7 @@
 
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::fields::Fields;
 use crate::base::memory::{buffers, copy};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
@@ -74,6 +75,12 @@ impl<R: Real> Gauss6<R> {
     /// A new integrator.
     pub fn new() -> Self {
         Gauss6 { past: FixedStep::new() }
+    }
+
+    /// Every field, in order.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>) {
+        let Gauss6 { past } = self;
+        past.each(io, 1);
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.

@@ -4,6 +4,7 @@
 
 use super::fixed_step::{FixedStep, add_increment, check_step};
 use super::system::{Counters, System, all_finite, evaluate};
+use crate::base::fields::Fields;
 use crate::base::memory::{axpy, buffers, copy, part};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
@@ -52,6 +53,13 @@ impl<R: Real> Rk4<R> {
     /// A new integrator.
     pub fn new() -> Self {
         Rk4 { past: FixedStep::new(), made: false }
+    }
+
+    /// Every field, in order.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>) {
+        let Rk4 { past, made } = self;
+        io.flag("made", made);
+        past.each(io, PAST);
     }
 
     /// Numbers of memory for `dim` unknowns; `None` if that cannot be addressed.

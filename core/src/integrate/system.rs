@@ -2,6 +2,7 @@
 //!
 //! Tested by `integrate/tests/robustness.rs`.
 
+use crate::base::fields::Fields;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 
@@ -60,6 +61,16 @@ pub struct Counters {
     pub steps: u64,
     /// Trial steps given up: error too large, or no rate at the trial state.
     pub rejected: u64,
+}
+
+impl Counters {
+    /// Every field, in order.
+    pub(super) fn each<R: Real>(&mut self, io: &mut impl Fields<R>) {
+        let Counters { evaluations, steps, rejected } = self;
+        io.total("evaluations", evaluations);
+        io.total("steps", steps);
+        io.total("rejected", rejected);
+    }
 }
 
 /// Evaluates the right-hand side and refuses rates that are not finite.

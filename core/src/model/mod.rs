@@ -122,6 +122,8 @@ pub(crate) struct NearDims {
 /// Everything of a model that has a fixed size.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelHead<R> {
+    /// See [`Model::fingerprint`].
+    pub(crate) fingerprint: u64,
     pub(crate) fluid_density: R,
     pub(crate) gravity: R,
     pub(crate) repulsion: Option<Repulsion<R>>,
@@ -191,6 +193,12 @@ impl<'a, R: Real> Model<'a, R> {
     /// What is computed and what it costs.
     pub fn plan(&self) -> &'a Plan {
         &self.head.plan
+    }
+    /// A number that tells models apart: two scenes that differ in any value of any definition, in their precision or in the nodes
+    /// that were chosen have different ones (but for a chance of 2⁻⁶⁴), equal scenes the same, on every machine. 0 and −0 count as
+    /// different. O(1).
+    pub fn fingerprint(&self) -> u64 {
+        self.head.fingerprint
     }
     /// Is a coordinate an angle, and not a length?
     pub(crate) fn is_angle(&self, c: &CoordinateRecord<R>) -> bool {

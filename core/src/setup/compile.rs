@@ -10,6 +10,7 @@ use crate::model::boundary::BoundaryRecord;
 use crate::model::plan::Plan;
 use crate::model::{Control, CoordinateRecord, Formulation, LinkRecord, Model, ModelHead, NearDims};
 use crate::scene::{CirculationModel, Description, each_link, motions, wall_count};
+use crate::setup::fingerprint::fingerprint;
 use crate::setup::items::items;
 use crate::setup::layout::{Layout, lay_out};
 use crate::setup::records::{build_boundaries, build_coordinates, build_links, grade_walls};
@@ -169,6 +170,7 @@ fn head<R: Real, S: Description<R>>(
     };
     plan.operations = plan.count_operations(layout.unknowns);
     let mut head = ModelHead {
+        fingerprint: fingerprint(scene),
         fluid_density: settings.fluid_density,
         gravity: settings.gravity,
         repulsion: settings.repulsion.filter(|r| r.epsilon != R::zero()),

@@ -2,6 +2,7 @@
 
 pub(crate) mod automatic_nodes;
 pub(crate) mod compile;
+mod fingerprint;
 mod items;
 mod layout;
 #[cfg(feature = "alloc")]

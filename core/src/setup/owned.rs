@@ -98,6 +98,25 @@ impl<R: Real> SimBuf<R> {
         Ok(SimBuf { model, head, reals })
     }
 
+    /// All that the simulation remembers, as bytes (see [`Sim::save`]).
+    ///
+    /// # Errors
+    /// As [`Sim::save`].
+    pub fn save(&mut self) -> Result<Vec<u8>> {
+        let sim = self.view();
+        let mut bytes = vec![0; sim.save_len()];
+        sim.save(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    /// Makes the simulation what was saved (see [`Sim::load`]).
+    ///
+    /// # Errors
+    /// As [`Sim::load`].
+    pub fn load(&mut self, bytes: &[u8]) -> Result<()> {
+        self.view().load(bytes)
+    }
+
     /// The simulation's view, through which everything is done. O(1).
     #[allow(clippy::expect_used)] // the memory was sized for this model when it was made
     pub fn view(&mut self) -> Sim<'_, R> {

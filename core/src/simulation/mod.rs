@@ -4,6 +4,7 @@ pub(crate) mod diagnostics;
 mod drives;
 pub(crate) mod notices;
 pub(crate) mod right_hand_side;
+mod saved;
 pub(crate) mod sim;
 #[cfg(feature = "bench")]
 pub mod stages;

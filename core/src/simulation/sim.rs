@@ -44,6 +44,8 @@ impl SimRequirement {
 pub struct SimHead<R> {
     /// How far it is: what it remembers.
     pub(crate) progress: Progress<R>,
+    /// Fingerprint of its model; 0 before [`Sim::init`].
+    model: u64,
     /// What its scratch holds.
     pub(crate) kept: Kept<R>,
 }
@@ -128,7 +130,7 @@ impl<'a, R: Real> Sim<'a, R> {
             balance: Balance::unknown(),
         };
         progress.set_clock();
-        Ok(SimHead { progress, kept: Kept::default() })
+        Ok(SimHead { progress, model: 0, kept: Kept::default() })
     }
 
     /// Starts a simulation in the caller's memory at time 0 and the scene's initial state. O(N²) in pairs of boundaries that are close;
@@ -143,6 +145,7 @@ impl<'a, R: Real> Sim<'a, R> {
         }
         reals.fill(R::zero());
         head.kept = Kept::default();
+        head.model = model.fingerprint();
         let mut sim = Sim::view(model, head, reals)?;
         sim.evaluation.place_walls(&model);
         let n = model.head.plan.free_coordinates;
@@ -180,12 +183,15 @@ impl<'a, R: Real> Sim<'a, R> {
     /// The view of a simulation that [`Sim::init`] set up in this memory, for this model. O(1).
     ///
     /// # Errors
-    /// `MemoryTooSmall`.
+    /// `BadHandle` if the simulation was set up for a model that differs in any value, or not at all; `MemoryTooSmall`.
     pub fn view(model: Model<'a, R>, head: &'a mut SimHead<R>, reals: &'a mut [R]) -> Result<Self> {
         let given = reals.len() as f64;
         let named = |e: Error| if e.status == Status::MemoryTooSmall { e.of("length", given) } else { e };
         let coordinates = model.coordinates.len();
-        let SimHead { progress, kept } = head;
+        let SimHead { progress, model: own, kept } = head;
+        if *own != model.fingerprint() {
+            return Err(Error::new(Status::BadHandle).of("model", f64::NAN));
+        }
         let rest = &mut { reals };
         let state = State::take(&StateDims::of(model.head, coordinates), rest).map_err(named)?;
         let evaluation = Evaluation::take(&Dims::of(model.head, coordinates), kept, rest).map_err(named)?;

@@ -2,6 +2,7 @@
 //!
 //! Tested by `tests/integrators.rs:estimated_time_errors_tell_lengths_and_angles_within_a_known_factor`.
 
+use crate::base::fields::Fields;
 use crate::base::memory::at;
 use crate::base::scalar::Real;
 use crate::model::{Control, Formulation, Model};
@@ -91,7 +92,23 @@ pub(crate) struct Rough<R> {
     pub(crate) better: bool,
 }
 
+impl<R: Real> StepError<R> {
+    fn each(&mut self, io: &mut impl Fields<R>) {
+        let StepError { kinds, relative } = self;
+        kinds.iter_mut().chain([relative]).for_each(|x| io.real("step_error", x));
+    }
+}
+
 impl<R: Real> Rough<R> {
+    /// Every field, in order.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>) {
+        let Rough { last, sum, steps, better } = self;
+        last.each(io);
+        sum.each(io);
+        io.total("rough_steps", steps);
+        io.flag("better", better);
+    }
+
     pub(crate) fn nothing() -> Self {
         Rough { last: StepError::zero(), sum: StepError::zero(), steps: 0, better: false }
     }
@@ -106,6 +123,15 @@ impl<R: Real> Rough<R> {
 }
 
 impl<R: Real> TimeError<R> {
+    /// Every field, in order.
+    pub(crate) fn each(&mut self, io: &mut impl Fields<R>) {
+        let TimeError { length, angle, speed, spin, length_sum, angle_sum, speed_sum, spin_sum, unknown } = self;
+        for x in [length, angle, speed, spin, length_sum, angle_sum, speed_sum, spin_sum] {
+            io.real("time_error", x);
+        }
+        io.total("unknown", unknown);
+    }
+
     /// Adds a step.
     pub(crate) fn add(&mut self, error: &StepError<R>) {
         self.add_sum(error, error);
