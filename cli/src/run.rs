@@ -1,6 +1,6 @@
 //! `nekton run`: simulate, show progress, write everything.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,7 +11,7 @@ use crate::output::{Target, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
 use crate::report;
-use crate::scene_file::{Integrator, Problem, RunDef};
+use crate::scene_file::{Integrator, Problem, RunDef, SceneFile};
 use crate::setup::Setup;
 use crate::trade;
 use nekton::{Model, Resolution, Sim};
@@ -22,8 +22,10 @@ const OUTLINE_POINTS: usize = 240;
 const PROGRESS: u64 = 1000;
 
 /// Runs a scene and writes its results.
-pub fn run(path: &Path, folder: &Path, error: Option<f64>) -> Result<Ending, Problem> {
-    let mut setup = Setup::open(path)?;
+pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, PathBuf)]) -> Result<Ending, Problem> {
+    let mut scene = SceneFile::open(path)?;
+    scene.feed(channels)?;
+    let mut setup = Setup::of(scene)?;
     let mut plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
     let choice = error.map(|error| trade::choose(path, &setup.scene, error)).transpose()?;
@@ -39,7 +41,13 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>) -> Result<Ending, Pro
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
     figures(&view, &mut record);
     let time = clock.elapsed();
-    record.stopped = stopped.as_ref().map(|(t, e)| format!("t = {t:.6} s: {}", setup.scene.describe(e)));
+    record.stopped = stopped.as_ref().map(|(t, e)| {
+        let advice = match e.status {
+            Status::TooManySteps => format!("; {}", plan.integrator.way_to_fewer_steps()),
+            _ => String::new(),
+        };
+        format!("t = {t:.6} s: {}{advice}", setup.scene.describe(e))
+    });
 
     let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy());
     let failed = |e: Box<dyn std::error::Error>| Problem::file(folder, format!("the plots could not be drawn: {e}"));
@@ -64,8 +72,20 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         Integrator::Rk4 { step } => format!("rk4, step {step} s"),
         Integrator::Abm4 { step } => format!("abm4, step {step} s"),
         Integrator::Gauss6 { step } => format!("gauss6, step {step} s"),
-        Integrator::Adams { tolerance } => format!("adams, relative and absolute tolerance {tolerance:e}"),
+        Integrator::Adams { tolerance, max_step, first_step } => {
+            let given = |name: &str, step: f64| if step > 0.0 { format!(", {name} {step} s") } else { String::new() };
+            let limits = given("longest step", max_step) + &given("first step", first_step);
+            format!("adams, relative and absolute tolerance {tolerance:e}{limits}")
+        }
     };
+    let mut settings = vec![
+        ("scene file".into(), setup.scene.path().display().to_string()),
+        ("duration".into(), format!("{} s", run.duration)),
+        ("output interval".into(), format!("{} s", run.output_interval)),
+        ("integrator".into(), method),
+        ("nodes".into(), setup.nodes().join(", ")),
+    ];
+    settings.extend(setup.scene.channels());
     Record {
         joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
         links: labels,
@@ -82,13 +102,7 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         notices: setup.notices(),
         plan: plan.to_string(),
         tolerance: plan.tolerance,
-        settings: vec![
-            ("scene file".into(), setup.scene.path().display().to_string()),
-            ("duration".into(), format!("{} s", run.duration)),
-            ("output interval".into(), format!("{} s", run.output_interval)),
-            ("integrator".into(), method),
-            ("nodes".into(), setup.nodes().join(", ")),
-        ],
+        settings,
         ..Record::default()
     }
 }

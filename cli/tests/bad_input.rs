@@ -59,7 +59,7 @@ fn missing_key() {
     );
     refuses(
         &changed("motion = { harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }\n", ""),
-        "scene.toml:13: link 2 of body `fish` needs `motion` ({ harmonic = … }, { table = … } or { torque = … }; \
+        "scene.toml:13: link 2 of body `fish` needs `motion` ({ harmonic = … }, { table = … }, { channel = … } or { torque = … }; \
          a stiff joint is { locked = 0.0 }, a free one { torque = 0.0 })",
     );
     refuses("[run]\nduration = 1\n", "scene.toml: the scene has no body (add [[body]] with one or more [[body.link]])");

@@ -61,7 +61,7 @@ fn setting(nodes: usize, tolerance: f64) -> Setting {
         quadrature: Quadrature::Graded,
         force: ForceFormula::ExactGradient,
         single: false,
-        integrator: Integrator::Adams { tolerance },
+        integrator: Integrator::adams(tolerance),
         nodes,
     }
 }
