@@ -183,7 +183,10 @@ fn values_out_of_range() {
         "scene.toml:33: `output_interval` makes 500000000 rows (make output_interval larger)",
     );
     refuses(&changed("\"adams\"", "\"adam\""), "scene.toml:34: `method` cannot be `adam` (did you mean `adams`?)");
-    refuses(&changed("\"adams\"", "\"rk4\""), "scene.toml:34: `tolerance` does not go with method `rk4` (its accuracy is that of its `step`)");
+    refuses(
+        &changed("\"adams\"", "\"rk4\""),
+        "scene.toml:34: `tolerance` does not go with method `rk4` (its accuracy is that of its `step`)",
+    );
     refuses(
         &changed("{ ellipse = [1.0, 0.4] }", "{ polygon = [[0, 0], [1, 0]] }"),
         "scene.toml:10: `polygon` needs at least 3 points, but has 2",

@@ -75,7 +75,7 @@ fn given_rates_that_lead_out_of_the_rows_are_told() {
     let told = notices(&done);
     assert!(told.len() == 1 && told[0].starts_with("way.csv:2: between t = 0 and 10 "), "{told:?}");
     // A whole sine with its own rates: between its rows it rises above them, as it should.
-    let sine: String = (0..=30).map(|k| f64::from(k)).map(|t| format!("{t},{},{}\n", t.sin(), t.cos())).collect();
+    let sine: String = (0..=30).map(f64::from).map(|t| format!("{t},{},{}\n", t.sin(), t.cos())).collect();
     assert_eq!(notices(&ran(&moved(&format!("t,u,du\n{sine}"), ""))), [""; 0]);
 }
 
