@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place, Status};
 
+use crate::drift;
 use crate::ending::{Ending, say};
 use crate::output::{Target, tables};
 use crate::plots;
@@ -39,6 +40,7 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, 
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
+    record.notices.extend(drift::notice(&record.rows, plan.integrator));
     figures(&view, &mut record);
     let time = clock.elapsed();
     record.stopped = stopped.as_ref().map(|(t, e)| {

@@ -125,3 +125,92 @@ fn quintic(a: &[f64; 4], b: &[f64; 4], t: f64) -> f64 {
     let x = (t - a[0]) / h;
     side(a, x, h) + side(b, 1.0 - x, -h)
 }
+
+#[cfg(test)]
+mod tests {
+    use nekton::scene::{
+        Body, CirculationModel, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Root, Scene,
+        Shape, Signal, Window,
+    };
+
+    use super::{Stride, strides};
+
+    /// The strides of a scene with these drives at its joints.
+    fn of(drives: &[Drive<'_, f64>], until: f64) -> Vec<Stride> {
+        let joint = |drive| Joint {
+            parent: 0,
+            kind: JointKind::Hinge,
+            parent_anchor: [1.2, 0.0],
+            self_anchor: [-1.2, 0.0],
+            drive,
+        };
+        let links: Vec<Link<'_, f64>> = std::iter::once(None)
+            .chain(drives.iter().map(|d| Some(joint(*d))))
+            .map(|joint| Link {
+                shape: Shape::Ellipse { a: 1.0, b: 0.3 },
+                mass: Mass::Density(1.0),
+                nodes: 24,
+                circulation: 0.0,
+                joint,
+            })
+            .collect();
+        let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root: Root::Free, links: &links }];
+        let scene = Scene {
+            fluid_density: 1.0,
+            gravity: 0.0,
+            repulsion: None,
+            circulation: CirculationModel::Full,
+            tank: None,
+            obstacles: &[],
+            bodies: &bodies,
+            force: ForceFormula::ExactGradient,
+            quadrature: Quadrature::Graded,
+            tolerance: None,
+            shortcuts: true,
+        };
+        let all = strides(&scene, until);
+        // They follow each other from 0 to the end.
+        assert_eq!((all[0].from, all[all.len() - 1].to), (0.0, until));
+        assert!(all.windows(2).all(|p| p[0].to == p[1].from && p[0].from < p[0].to));
+        all
+    }
+
+    /// Longest step of strides that have something of (from, to).
+    fn longest(all: &[Stride], from: f64, to: f64) -> f64 {
+        let within = all.iter().filter(|s| s.from < to && s.to > from);
+        within.map(|s| (s.to - s.from) / s.steps as f64).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn steps_are_short_where_a_drive_is_fast_and_only_there() {
+        let terms = [Harmonic { amplitude: 1.0, frequency: 50.0, phase: 0.0, offset: 0.0 }];
+        let window = Some(Window { from: 600.0, to: 600.01, ramp: 0.004 });
+        let all = of(&[Drive::Motion(Signal::Harmonic { terms: &terms, window })], 1000.0);
+        assert!(longest(&all, 600.0, 600.004).max(longest(&all, 600.006, 600.01)) < 0.0004, "{all:?}");
+        assert!(longest(&all, 0.0, 600.0) > 30.0 && all.len() < 25, "{all:?}");
+    }
+
+    #[test]
+    fn smooth_rows_are_taken_together_and_pulses_and_jumps_between_long_rests_are_not() {
+        let smooth: Vec<[f64; 4]> =
+            (0..=20_000).map(|k| 1e-3 * f64::from(k)).map(|t| [t, t.sin(), t.cos(), -t.sin()]).collect();
+        let all = of(&[Drive::Motion(Signal::Table(&smooth))], 20.0);
+        assert!(longest(&all, 0.0, 20.0) < 1.0 && all.len() < 200, "{}", all.len());
+        let mut rows: Vec<[f64; 4]> = (0..5000).map(|k| [0.2 * f64::from(k), 0.0, 0.0, 0.0]).collect();
+        for (k, u) in [(2000, 1e-3), (2001, 1.0), (2002, 1e-3)] {
+            rows[k] = [400.0 + 0.001 * (k as f64 - 2000.0), u, 0.0, 0.0];
+        }
+        let torque = |table| Drive::Torque {
+            torque: Signal::Table(table),
+            stiffness: 0.0,
+            damping: 0.0,
+            rest: 0.0,
+            start: [0.0; 2],
+        };
+        let all = of(&[torque(&rows)], 999.0);
+        assert!(longest(&all, 400.0, 400.002) <= 0.0006, "{all:?}");
+        assert!(all.len() < 100, "{}", all.len());
+        let jump = [[0.0, 0.0, 0.0, 0.0], [3.3, 0.0, 0.0, 0.0], [3.3, 1.0, 0.0, 0.0], [9.0, 1.0, 0.0, 0.0]];
+        assert!(of(&[torque(&jump)], 10.0).iter().any(|s| s.to == 3.3));
+    }
+}
