@@ -1,7 +1,6 @@
 //! The command `nekton`: scene files in; tables, plots and an animated report out. A library only so that the developers'
 //! commands draw with the same [`plots`].
 
-mod drift;
 mod ending;
 mod evaluate;
 mod ingredients;

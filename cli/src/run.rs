@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place, Status};
 
-use crate::drift;
 use crate::ending::{Ending, say};
 use crate::output::{Target, tables};
 use crate::plots;
@@ -40,7 +39,6 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, 
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
-    record.notices.extend(drift::notice(&record.rows, plan.integrator));
     figures(&view, &mut record);
     let time = clock.elapsed();
     record.stopped = stopped.as_ref().map(|(t, e)| {
@@ -227,44 +225,62 @@ fn keep(record: &mut Record, (row, between): (Row, String)) {
     record.rows.push(row);
 }
 
-/// A time during which steps are too long, or the error in space exceeds what is asked.
+/// A time during which something is to be noticed.
 struct Episode {
     from: f64,
     worst: (f64, Error),
     gap: f64,
 }
 
-/// Follows what a simulation has to say about its errors: one notice for each episode.
+/// Follows what a simulation has to say about its errors: one notice for each episode of each kind.
 #[derive(Default)]
 struct Watch {
-    episode: Option<Episode>,
+    episodes: [Option<Episode>; 4],
+}
+
+/// The larger, the worse.
+fn severity(notice: &Error) -> f64 {
+    match notice.status {
+        // The step that would have seen the drive.
+        Status::DriveUnresolved => -notice.value,
+        _ => notice.value.abs(),
+    }
 }
 
 impl Watch {
     /// After a row.
     fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
-        let Some((time, notice)) = sim.notice() else { return self.end(setup, sim.time(), record) };
-        if self.episode.as_ref().is_some_and(|e| e.worst.1.status != notice.status) {
-            self.end(setup, time, record);
-        }
-        let gap = sim.gap().distance;
-        let episode = self.episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
-        if notice.value > episode.worst.1.value {
-            (episode.worst, episode.gap) = ((time, notice), gap);
+        let notices = sim.notices();
+        let gap = if notices.iter().any(Option::is_some) { sim.gap().distance } else { f64::INFINITY };
+        for (episode, notice) in self.episodes.iter_mut().zip(notices) {
+            let Some((time, notice)) = notice else {
+                tell(episode, setup, sim.time(), record);
+                continue;
+            };
+            let episode = episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
+            if severity(&notice) > severity(&episode.worst.1) {
+                (episode.worst, episode.gap) = ((time, notice), gap);
+            }
         }
     }
 
-    /// The episode, if there is one, is over.
+    /// The episodes, if there are any, are over.
     fn end(&mut self, setup: &Setup, to: f64, record: &mut Record) {
-        let Some(Episode { from, worst: (time, notice), gap }) = self.episode.take() else { return };
-        let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
-        let text = setup.scene.describe(&notice);
-        let asked = match notice.status {
-            Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
-            _ => String::new(),
-        };
-        record.notices.push(format!("t = {from:.6} to {to:.6} s: {text}{asked}; worst at t = {time:.6} s{gap}"));
+        self.episodes.iter_mut().for_each(|episode| tell(episode, setup, to, record));
     }
+}
+
+/// An episode, if there is one, is over.
+fn tell(episode: &mut Option<Episode>, setup: &Setup, to: f64, record: &mut Record) {
+    let Some(Episode { from, worst: (time, notice), gap }) = episode.take() else { return };
+    let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
+    let text = setup.scene.describe(&notice);
+    let more = match notice.status {
+        Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
+        Status::EnergyDrift => format!(" J/m, the largest kinetic energy up to then {:.3e} J/m", notice.limit),
+        _ => String::new(),
+    };
+    record.notices.push(format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}"));
 }
 
 /// Error indicators and counters at the end.

@@ -12,6 +12,7 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
+use nekton::STEP_LIMIT;
 use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Quadrature, Repulsion, Scene, Wall};
 use nekton::status::{Error, Place, Status};
 
@@ -187,15 +188,19 @@ impl SceneFile {
     /// An error of the core in the user's names.
     pub fn describe(&self, error: &Error) -> String {
         let mut text = match (error.place, error.other) {
+            // Nobody can raise the limit here.
+            (Place::Scene, None) if error.status == Status::TooManySteps => {
+                format!("between two rows more steps are needed than the {STEP_LIMIT} allowed")
+            }
             (Place::Scene, None) => error.status.text().to_owned(),
             (place, None) => format!("{}: {}", self.name_of(place), error.status.text()),
             (place, Some(other)) => {
                 format!("{} and {}: {}", self.name_of(place), self.name_of(other), error.status.text())
             }
         };
-        // The gap of boundaries that touch is rounding only.
-        let touching = matches!(error.status, Status::Overlap | Status::Contact);
-        if !error.what.is_empty() && !touching {
+        // The gap of boundaries that touch is rounding only, and a limit of steps is told already.
+        let told = matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps);
+        if !error.what.is_empty() && !told {
             let size = error.value.abs();
             let value = if size == 0.0 || (1e-3..1e6).contains(&size) {
                 error.value.to_string()

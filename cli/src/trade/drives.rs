@@ -43,13 +43,14 @@ pub fn strides(scene: &Scene<'_, f64>, until: f64) -> Vec<Stride> {
             Drive::Locked(_) => None,
         }));
     }
-    let outputs = (0..=OUTPUTS).map(|k| until * k as f64 / OUTPUTS as f64);
-    let edges = drives.iter().flatten().flat_map(|s| [s.from, s.to]).filter(|t| *t > 0.0 && *t < until);
-    let mut times: Vec<f64> = outputs.chain(edges).collect();
-    times.sort_by(f64::total_cmp);
-    // Edges that differ by rounding are one; an output time is never the one that goes.
+    let outputs = |k: usize| until * k as f64 / OUTPUTS as f64;
+    // What differs by rounding is one time, and an output time is never the one that goes.
     let slack = 16.0 * f64::EPSILON * until;
-    times.dedup_by(|b, a| *b - *a <= slack);
+    let own = |t: &f64| (t - outputs((t / until * OUTPUTS as f64).round() as usize)).abs() > slack;
+    let edges = drives.iter().flatten().flat_map(|s| [s.from, s.to]).filter(|t| *t > 0.0 && *t < until).filter(own);
+    let mut times: Vec<f64> = (0..=OUTPUTS).map(outputs).chain(edges).collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup_by(|next, last| *next - *last <= slack);
     let mut all = Vec::new();
     for pair in times.windows(2) {
         let (from, to) = (pair[0], pair[1]);
@@ -212,5 +213,10 @@ mod tests {
         assert!(all.len() < 100, "{}", all.len());
         let jump = [[0.0, 0.0, 0.0, 0.0], [3.3, 0.0, 0.0, 0.0], [3.3, 1.0, 0.0, 0.0], [9.0, 1.0, 0.0, 0.0]];
         assert!(of(&[torque(&jump)], 10.0).iter().any(|s| s.to == 3.3));
+        // An edge that is an output time but for rounding takes nothing away.
+        let edge = 5.0_f64.next_down();
+        let near = [[0.0, 0.0, 0.0, 0.0], [edge, 0.0, 0.0, 0.0], [9.0, 1.0, 0.0, 0.0]];
+        let all = of(&[torque(&near)], 10.0);
+        assert!(all.iter().any(|s| s.to == 5.0) && all.iter().all(|s| s.to != edge), "{all:?}");
     }
 }
