@@ -157,6 +157,9 @@ fn integrate(
         bar.finish_and_clear();
     }
     watch.end(setup, sim.time(), record);
+    let explained = explained(record, run.integrator);
+    let drifts = std::mem::take(&mut record.drifts);
+    record.notices.extend(drifts.into_iter().filter(|(size, _)| *size > explained).map(|(_, text)| text));
     Ok(stopped)
 }
 
@@ -238,6 +241,21 @@ struct Watch {
     episodes: [Option<Episode>; 4],
 }
 
+/// While something slowly comes off from rest, what the tolerance allows may be all its energy: a drift below this many tolerances
+/// of the largest kinetic energy of the whole run is told to nobody.
+const TOLERATED: f64 = 10.0;
+/// The tolerance of methods that have none.
+const TOLERANCE: f64 = 1e-9;
+
+/// The drift of the energy that a run's tolerance explains.
+fn explained(record: &Record, integrator: Integrator) -> f64 {
+    let tolerance = match integrator {
+        Integrator::Adams { tolerance, .. } => tolerance,
+        _ => TOLERANCE,
+    };
+    record.energy_drift().map_or(0.0, |(_, kinetic)| (TOLERATED * tolerance).min(1e-3) * kinetic)
+}
+
 /// The larger, the worse.
 fn severity(notice: &Error) -> f64 {
     match notice.status {
@@ -280,7 +298,11 @@ fn tell(episode: &mut Option<Episode>, setup: &Setup, to: f64, record: &mut Reco
         Status::EnergyDrift => format!(" J/m, the largest kinetic energy up to then {:.3e} J/m", notice.limit),
         _ => String::new(),
     };
-    record.notices.push(format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}"));
+    let text = format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}");
+    match notice.status {
+        Status::EnergyDrift => record.drifts.push((notice.value.abs(), text)),
+        _ => record.notices.push(text),
+    }
 }
 
 /// Error indicators and counters at the end.

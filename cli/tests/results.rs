@@ -58,7 +58,8 @@ fn tables_have_the_documented_headers_and_17_digits() {
         assert_eq!(times.len(), 6);
         assert!(times.iter().enumerate().all(|(k, t)| (t - 0.1 * k as f64).abs() < 1e-15), "{times:?}");
         assert_eq!(times[5], 0.5);
-        for cell in table.lines().skip(1).flat_map(|l| l.split(',')) {
+        // Before the first step no error of time integration is known.
+        for cell in table.lines().skip(1).flat_map(|l| l.split(',')).filter(|c| *c != "NaN") {
             let digits = cell.split('e').next().unwrap().chars().filter(char::is_ascii_digit).count();
             assert_eq!(digits, 17, "{cell}");
         }

@@ -75,13 +75,13 @@ fn given_rates_that_lead_out_of_the_rows_are_told() {
     let told = notices(&done);
     assert!(told.len() == 1 && told[0].starts_with("way.csv:2: between t = 0 and 10 "), "{told:?}");
     // A whole sine with its own rates: between its rows it rises above them, as it should.
-    let sine: String = (0..=30).map(f64::from).map(|t| format!("{t},{},{}\n", t.sin(), t.cos())).collect();
+    let sine: String = (0..=31).map(f64::from).map(|t| format!("{t},{},{}\n", t.sin(), t.cos())).collect();
     assert_eq!(notices(&ran(&moved(&format!("t,u,du\n{sine}"), ""))), [""; 0]);
 }
 
 #[test]
 fn smooth_rows_that_lose_by_a_rate_of_zero_at_their_turns_are_told_unless_slopes_are_chosen() {
-    let sine: String = (0..=60).map(|k| 0.5 * f64::from(k)).map(|t| format!("{t},{}\n", t.sin())).collect();
+    let sine: String = (0..=62).map(|k| 0.5 * f64::from(k)).map(|t| format!("{t},{}\n", t.sin())).collect();
     let sine = format!("t,u\n{sine}");
     let told = notices(&ran(&moved(&sine, "")));
     assert!(told.len() == 1 && told[0].contains("the rows turn smoothly about t = "), "{told:?}");
