@@ -48,6 +48,9 @@ enum Command {
         /// Choose nodes, integrator and step for this relative error, by SCENE's table of `nekton trade` or by measuring a few
         #[arg(long, value_name = "E", value_parser = positive)]
         error: Option<f64>,
+        /// Let a channel of the scene follow a table (t,u[,du[,ddu]]); once for each channel
+        #[arg(long = "channel", value_name = "NAME=FILE", value_parser = channel)]
+        channels: Vec<(String, PathBuf)>,
     },
     /// Measure the trade between speed and accuracy: many settings against a converged reference
     #[command(after_help = EXIT_CODES)]
@@ -101,10 +104,18 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A channel's name and the path of a table.
+fn channel(text: &str) -> Result<(String, PathBuf), String> {
+    match text.split_once('=') {
+        Some((name, file)) if !name.is_empty() && !file.is_empty() => Ok((name.to_owned(), file.into())),
+        _ => Err("must be the name of a channel, an equals sign and the path of a table".into()),
+    }
+}
+
 /// Does what the arguments of the process say.
 pub fn command() -> ExitCode {
     let ending = match Arguments::parse().command {
-        Command::Run { scene, out, error } => run::run(&scene, &out, error),
+        Command::Run { scene, out, error, channels } => run::run(&scene, &out, error, &channels),
         Command::Trade { scene, out, error, limit, until, quick } => {
             trade::trade(&scene, &trade::Wish { out, errors: error, limit, until, quick })
         }

@@ -27,6 +27,8 @@ pub struct Record {
     pub stopped: Option<String>,
     /// Remarks on the scene.
     pub notices: Vec<String>,
+    /// Drifts of the energy, and what to say of them if nothing explains them: known at the end.
+    pub drifts: Vec<(f64, String)>,
     /// The plan, as text.
     pub plan: String,
     /// Settings: name and value.

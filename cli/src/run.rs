@@ -1,6 +1,6 @@
 //! `nekton run`: simulate, show progress, write everything.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,7 +11,7 @@ use crate::output::{Target, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
 use crate::report;
-use crate::scene_file::{Integrator, Problem, RunDef};
+use crate::scene_file::{Integrator, Problem, RunDef, SceneFile};
 use crate::setup::Setup;
 use crate::trade;
 use nekton::{Model, Resolution, Sim};
@@ -22,8 +22,10 @@ const OUTLINE_POINTS: usize = 240;
 const PROGRESS: u64 = 1000;
 
 /// Runs a scene and writes its results.
-pub fn run(path: &Path, folder: &Path, error: Option<f64>) -> Result<Ending, Problem> {
-    let mut setup = Setup::open(path)?;
+pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, PathBuf)]) -> Result<Ending, Problem> {
+    let mut scene = SceneFile::open(path)?;
+    scene.feed(channels)?;
+    let mut setup = Setup::of(scene)?;
     let mut plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
     let choice = error.map(|error| trade::choose(path, &setup.scene, error)).transpose()?;
@@ -39,7 +41,13 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>) -> Result<Ending, Pro
     let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
     figures(&view, &mut record);
     let time = clock.elapsed();
-    record.stopped = stopped.as_ref().map(|(t, e)| format!("t = {t:.6} s: {}", setup.scene.describe(e)));
+    record.stopped = stopped.as_ref().map(|(t, e)| {
+        let advice = match e.status {
+            Status::TooManySteps => format!("; {}", plan.integrator.way_to_fewer_steps()),
+            _ => String::new(),
+        };
+        format!("t = {t:.6} s: {}{advice}", setup.scene.describe(e))
+    });
 
     let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy());
     let failed = |e: Box<dyn std::error::Error>| Problem::file(folder, format!("the plots could not be drawn: {e}"));
@@ -64,8 +72,20 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         Integrator::Rk4 { step } => format!("rk4, step {step} s"),
         Integrator::Abm4 { step } => format!("abm4, step {step} s"),
         Integrator::Gauss6 { step } => format!("gauss6, step {step} s"),
-        Integrator::Adams { tolerance } => format!("adams, relative and absolute tolerance {tolerance:e}"),
+        Integrator::Adams { tolerance, max_step, first_step } => {
+            let given = |name: &str, step: f64| if step > 0.0 { format!(", {name} {step} s") } else { String::new() };
+            let limits = given("longest step", max_step) + &given("first step", first_step);
+            format!("adams, relative and absolute tolerance {tolerance:e}{limits}")
+        }
     };
+    let mut settings = vec![
+        ("scene file".into(), setup.scene.path().display().to_string()),
+        ("duration".into(), format!("{} s", run.duration)),
+        ("output interval".into(), format!("{} s", run.output_interval)),
+        ("integrator".into(), method),
+        ("nodes".into(), setup.nodes().join(", ")),
+    ];
+    settings.extend(setup.scene.channels());
     Record {
         joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
         links: labels,
@@ -82,13 +102,7 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         notices: setup.notices(),
         plan: plan.to_string(),
         tolerance: plan.tolerance,
-        settings: vec![
-            ("scene file".into(), setup.scene.path().display().to_string()),
-            ("duration".into(), format!("{} s", run.duration)),
-            ("output interval".into(), format!("{} s", run.output_interval)),
-            ("integrator".into(), method),
-            ("nodes".into(), setup.nodes().join(", ")),
-        ],
+        settings,
         ..Record::default()
     }
 }
@@ -143,6 +157,9 @@ fn integrate(
         bar.finish_and_clear();
     }
     watch.end(setup, sim.time(), record);
+    let explained = explained(record, run.integrator);
+    let drifts = std::mem::take(&mut record.drifts);
+    record.notices.extend(drifts.into_iter().filter(|(size, _)| *size > explained).map(|(_, text)| text));
     Ok(stopped)
 }
 
@@ -211,43 +228,80 @@ fn keep(record: &mut Record, (row, between): (Row, String)) {
     record.rows.push(row);
 }
 
-/// A time during which steps are too long, or the error in space exceeds what is asked.
+/// A time during which something is to be noticed.
 struct Episode {
     from: f64,
     worst: (f64, Error),
     gap: f64,
 }
 
-/// Follows what a simulation has to say about its errors: one notice for each episode.
+/// Follows what a simulation has to say about its errors: one notice for each episode of each kind.
 #[derive(Default)]
 struct Watch {
-    episode: Option<Episode>,
+    episodes: [Option<Episode>; 4],
+}
+
+/// While something slowly comes off from rest, what the tolerance allows may be all its energy: a drift below this many tolerances
+/// of the largest kinetic energy of the whole run is told to nobody.
+const TOLERATED: f64 = 10.0;
+/// The tolerance of methods that have none.
+const TOLERANCE: f64 = 1e-9;
+
+/// The drift of the energy that a run's tolerance explains.
+fn explained(record: &Record, integrator: Integrator) -> f64 {
+    let tolerance = match integrator {
+        Integrator::Adams { tolerance, .. } => tolerance,
+        _ => TOLERANCE,
+    };
+    record.energy_drift().map_or(0.0, |(_, kinetic)| (TOLERATED * tolerance).min(1e-3) * kinetic)
+}
+
+/// The larger, the worse.
+fn severity(notice: &Error) -> f64 {
+    match notice.status {
+        // The step that would have seen the drive.
+        Status::DriveUnresolved => -notice.value,
+        _ => notice.value.abs(),
+    }
 }
 
 impl Watch {
     /// After a row.
     fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
-        let Some((time, notice)) = sim.notice() else { return self.end(setup, sim.time(), record) };
-        if self.episode.as_ref().is_some_and(|e| e.worst.1.status != notice.status) {
-            self.end(setup, time, record);
-        }
-        let gap = sim.gap().distance;
-        let episode = self.episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
-        if notice.value > episode.worst.1.value {
-            (episode.worst, episode.gap) = ((time, notice), gap);
+        let notices = sim.notices();
+        let gap = if notices.iter().any(Option::is_some) { sim.gap().distance } else { f64::INFINITY };
+        for (episode, notice) in self.episodes.iter_mut().zip(notices) {
+            let Some((time, notice)) = notice else {
+                tell(episode, setup, sim.time(), record);
+                continue;
+            };
+            let episode = episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
+            if severity(&notice) > severity(&episode.worst.1) {
+                (episode.worst, episode.gap) = ((time, notice), gap);
+            }
         }
     }
 
-    /// The episode, if there is one, is over.
+    /// The episodes, if there are any, are over.
     fn end(&mut self, setup: &Setup, to: f64, record: &mut Record) {
-        let Some(Episode { from, worst: (time, notice), gap }) = self.episode.take() else { return };
-        let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
-        let text = setup.scene.describe(&notice);
-        let asked = match notice.status {
-            Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
-            _ => String::new(),
-        };
-        record.notices.push(format!("t = {from:.6} to {to:.6} s: {text}{asked}; worst at t = {time:.6} s{gap}"));
+        self.episodes.iter_mut().for_each(|episode| tell(episode, setup, to, record));
+    }
+}
+
+/// An episode, if there is one, is over.
+fn tell(episode: &mut Option<Episode>, setup: &Setup, to: f64, record: &mut Record) {
+    let Some(Episode { from, worst: (time, notice), gap }) = episode.take() else { return };
+    let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
+    let text = setup.scene.describe(&notice);
+    let more = match notice.status {
+        Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
+        Status::EnergyDrift => format!(" J/m, the largest kinetic energy up to then {:.3e} J/m", notice.limit),
+        _ => String::new(),
+    };
+    let text = format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}");
+    match notice.status {
+        Status::EnergyDrift => record.drifts.push((notice.value.abs(), text)),
+        _ => record.notices.push(text),
     }
 }
 

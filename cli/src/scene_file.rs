@@ -1,19 +1,26 @@
 //! Scene files: TOML in, a checked description out, errors with file and line.
 
 mod body;
+mod channels;
+mod range;
 mod reader;
+mod run;
 mod shape;
 mod signal;
+mod slopes;
 mod table;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use nekton::STEP_LIMIT;
 use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Quadrature, Repulsion, Scene, Wall};
 use nekton::status::{Error, Place, Status};
 
 pub use body::{BodyDef, LinkDef};
 pub use reader::Problem;
 use reader::{Item, Lines, Outcome, Section, Source};
+pub use run::{Integrator, RunDef};
+use run::{RUN, read_run};
 use shape::{ShapeDef, nodes};
 
 /// A scene with its own data and the lines on which everything stands.
@@ -52,52 +59,7 @@ pub struct WallDef {
     lines: Lines,
 }
 
-/// What `nekton run` is to do.
-#[derive(Clone, Debug)]
-pub struct RunDef {
-    /// Simulated time.
-    pub duration: f64,
-    /// Time between rows of the tables.
-    pub output_interval: f64,
-    /// Method of integration.
-    pub integrator: Integrator,
-}
-
-/// Method of integration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Integrator {
-    /// Fixed step, order 4, one-step.
-    Rk4 {
-        /// Step.
-        step: f64,
-    },
-    /// Fixed step, order 4, multistep.
-    Abm4 {
-        /// Step.
-        step: f64,
-    },
-    /// Fixed step, order 6, implicit: for long runs.
-    Gauss6 {
-        /// Step.
-        step: f64,
-    },
-    /// Variable step, orders 1 to 12.
-    Adams {
-        /// Relative and absolute tolerance.
-        tolerance: f64,
-    },
-}
-
-/// Rows of the tables if the scene gives no `output_interval`.
-const DEFAULT_ROWS: f64 = 200.0;
-/// A run with more rows than this is a slip of the pen.
-const MOST_ROWS: f64 = 1e6;
-/// Tolerance if the scene gives none.
-const DEFAULT_TOLERANCE: f64 = 1e-9;
-
 const TOP: &[&str] = &["fluid", "repulsion", "circulation", "tank", "obstacle", "body", "run"];
-const RUN: &[&str] = &["duration", "output_interval", "integrator", "force", "quadrature", "tolerance", "shortcuts"];
-
 impl SceneFile {
     /// Reads and checks a scene file.
     pub fn open(path: &Path) -> Outcome<Self> {
@@ -105,6 +67,25 @@ impl SceneFile {
         let mut scene = read(&source)?;
         scene.source = source;
         Ok(scene)
+    }
+
+    /// Puts tables in place of channels: the name of each channel and the path of its table.
+    pub fn feed(&mut self, feeds: &[(String, PathBuf)]) -> Outcome<()> {
+        channels::feed(&self.source.path, &mut self.bodies, feeds)
+    }
+
+    /// Every channel, and what stands for it.
+    pub fn channels(&self) -> Vec<(String, String)> {
+        let text = |c: &signal::Channel| match &c.feed {
+            Some((file, _)) => file.clone(),
+            None => format!("{}: no table is given", c.value),
+        };
+        channels::channels(&self.bodies).map(|c| (format!("channel {}", c.name), text(c))).collect()
+    }
+
+    /// What the user should know of tables and channels.
+    pub fn notices(&self) -> Vec<String> {
+        self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
     }
 
     /// The text of the file.
@@ -207,15 +188,19 @@ impl SceneFile {
     /// An error of the core in the user's names.
     pub fn describe(&self, error: &Error) -> String {
         let mut text = match (error.place, error.other) {
+            // Nobody can raise the limit here.
+            (Place::Scene, None) if error.status == Status::TooManySteps => {
+                format!("between two rows more steps are needed than the {STEP_LIMIT} allowed")
+            }
             (Place::Scene, None) => error.status.text().to_owned(),
             (place, None) => format!("{}: {}", self.name_of(place), error.status.text()),
             (place, Some(other)) => {
                 format!("{} and {}: {}", self.name_of(place), self.name_of(other), error.status.text())
             }
         };
-        // The gap of boundaries that touch is rounding only.
-        let touching = matches!(error.status, Status::Overlap | Status::Contact);
-        if !error.what.is_empty() && !touching {
+        // The gap of boundaries that touch is rounding only, and a limit of steps is told already.
+        let told = matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps);
+        if !error.what.is_empty() && !told {
             let size = error.value.abs();
             let value = if size == 0.0 || (1e-3..1e6).contains(&size) {
                 error.value.to_string()
@@ -340,6 +325,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
             Problem::file(&source.path, "the scene has no body").hint("add [[body]] with one or more [[body.link]]")
         );
     }
+    channels::refuse_duplicates(source, &bodies)?;
     let run = top.get("run").map(|r| r.section("[run]", RUN)).transpose()?;
     let mut force = ForceFormula::ExactGradient;
     let mut quadrature = Quadrature::Graded;
@@ -371,28 +357,4 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         run: run.as_ref().map(read_run).transpose()?,
         lines: top.lines(&["body", "obstacle", "tank"]),
     })
-}
-
-fn read_run(section: &Section<'_>) -> Outcome<RunDef> {
-    let duration = section.need("duration")?.positive()?;
-    let output_interval = section.or("output_interval", duration / DEFAULT_ROWS, Item::positive)?;
-    if duration / output_interval > MOST_ROWS {
-        let message = format!("makes {} rows", (duration / output_interval).round());
-        return Err(section.need("output_interval")?.problem(message).hint("make output_interval larger"));
-    }
-    let integrator = section.or("integrator", Integrator::Adams { tolerance: DEFAULT_TOLERANCE }, |item| {
-        let section = item.section("`integrator`", &["method", "tolerance", "step"])?;
-        let method = section.need("method")?.word(&["adams", "rk4", "abm4", "gauss6"])?;
-        let stranger = if method == "adams" { "step" } else { "tolerance" };
-        if let Some(item) = section.get(stranger) {
-            return Err(item.problem(format!("does not go with method `{method}`")));
-        }
-        Ok(match method {
-            "adams" => Integrator::Adams { tolerance: section.or("tolerance", DEFAULT_TOLERANCE, Item::positive)? },
-            "rk4" => Integrator::Rk4 { step: section.need("step")?.positive()? },
-            "gauss6" => Integrator::Gauss6 { step: section.need("step")?.positive()? },
-            _ => Integrator::Abm4 { step: section.need("step")?.positive()? },
-        })
-    })?;
-    Ok(RunDef { duration, output_interval, integrator })
 }

@@ -24,7 +24,11 @@ pub struct Setup {
 impl Setup {
     /// Reads and compiles a scene.
     pub fn open(path: &Path) -> Result<Self, Problem> {
-        let scene = SceneFile::open(path)?;
+        Self::of(SceneFile::open(path)?)
+    }
+
+    /// Compiles a scene.
+    pub fn of(scene: SceneFile) -> Result<Self, Problem> {
         let model = scene.with_core(|core| ModelBuf::resolved(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
@@ -73,9 +77,10 @@ impl Setup {
         links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
     }
 
-    /// What set-up mended.
+    /// What set-up mended, and what the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         let view = self.model.view();
-        view.notices().map(|(place, status)| format!("{}: {}", self.scene.name_of(place), status.text())).collect()
+        let mended = view.notices().map(|(place, status)| format!("{}: {}", self.scene.name_of(place), status.text()));
+        mended.chain(self.scene.notices()).collect()
     }
 }

@@ -1,5 +1,6 @@
 //! `nekton trade`: the trade between speed and accuracy, measured; and the choice of a setting for `nekton run --error`.
 
+mod drives;
 mod measure;
 mod picture;
 mod reference;
@@ -17,7 +18,7 @@ use nekton::status::Error;
 use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
 use measure::Bench;
-use reference::{Reference, Refusal};
+use reference::{Reference, Refusal, second_opinion};
 use setting::shown;
 pub use setting::{Setting, Variant, counts, method, method_name, parameter, unit};
 use study::{Measured, Status, Study, cheapest, front};
@@ -40,11 +41,11 @@ pub struct Wish {
 /// Measures a scene.
 pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
     let scene = SceneFile::open(path)?;
-    let duration = scene.run()?.duration;
+    let (duration, own) = (scene.run()?.duration, scene.run()?.integrator);
     let until = wish.until.unwrap_or(duration);
     scene.with_core(|core| {
-        let table = Table::new(&wish.out.clone().unwrap_or_else(|| beside(path)), mark(core));
-        let bench = Bench::new(core).map_err(|e| scene.problem(&e))?;
+        let table = Table::new(&wish.out.clone().unwrap_or_else(|| beside(path)), mark(core, own));
+        let bench = Bench::new(core, own).map_err(|e| scene.problem(&e))?;
         let known = table.rows()?;
         let limit = Duration::from_secs_f64(wish.limit);
         let bar = progress();
@@ -52,13 +53,24 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
             None => table.reference(None)?,
             wanted => table.reference(wanted)?,
         };
-        let reference = match stored {
+        let mut reference = match stored {
             Some(reference) => reference,
             None => {
                 let found = reference::reference(&bench, until, limit, 0.0, |what| bar.set_message(what.to_owned()));
                 found.map_err(|e| refused(&scene, e))?
             }
         };
+        let smallest = wish.errors.iter().copied().fold(f64::INFINITY, f64::min);
+        if !reference.opinion.certifies(smallest) {
+            bar.set_message("reference: second opinion");
+            reference.opinion = second_opinion(&bench, &reference, smallest, limit * reference::PATIENCE);
+        }
+        // What is certified for none of the errors is certified for nobody.
+        let largest = wish.errors.iter().copied().fold(0.0, f64::max);
+        if !reference.opinion.certifies(largest) {
+            let (text, way) = reference.opinion.against(largest);
+            return Err(Problem::file(path, text).hint(way));
+        }
         let mut writer = table.open()?;
         table.keep_reference(&reference)?;
         let known: Vec<Measured> = known.into_iter().filter(|(u, _)| *u == reference.until).map(|(_, m)| m).collect();
@@ -82,9 +94,10 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
         let picture = picture::draw(&title, &rows, &reference)
             .map_err(|e| Problem::file(path, format!("the plot could not be drawn: {e}")))?;
         table.write("trade.svg", picture.as_bytes())?;
-        // Below its own error the reference cannot tell.
+        // Below its own error the reference cannot tell, nor below what another method says.
+        let tells = |e: f64| e >= reference.error && reference.opinion.certifies(e);
         let chosen: Vec<(f64, Option<&Measured>)> =
-            wish.errors.iter().map(|e| (*e, cheapest(&rows, *e).filter(|_| *e >= reference.error))).collect();
+            wish.errors.iter().map(|e| (*e, cheapest(&rows, *e).filter(|_| tells(*e)))).collect();
         table.write("recommended.csv", table::recommended(&reference, &chosen).as_bytes())?;
         report(&scene, duration, &reference, &rows, &chosen);
         say(&format!("{fresh} settings measured, {before} known from before"));
@@ -123,6 +136,7 @@ fn report(
         "reference  {} nodes on the largest link; its own error {:.1e}; errors relative to a travel of {:.3} m",
         reference.nodes, reference.error, reference.travel
     ));
+    say(&format!("confirmed  by gauss6 on steps that resolve the drives to {:.1e}", reference.opinion.difference));
     say(&format!(
         "settings   {}: {} done, {} over the limit, {} failed\n",
         rows.len(),
@@ -151,6 +165,10 @@ fn report(
             Some(m) => say(&format!("for {error:.0e}: {}, {:.1e} s/s", m.setting.text(), m.cost)),
             None if *error < reference.error => {
                 say(&format!("for {error:.0e}: the reference itself is only good to {:.0e}", reference.error));
+            }
+            None if !reference.opinion.certifies(*error) => {
+                let (text, way) = reference.opinion.against(*error);
+                say(&format!("for {error:.0e}: {text} ({way})"));
             }
             None => say(&format!("for {error:.0e}: no setting that was tried is exact enough")),
         }
@@ -187,26 +205,37 @@ pub struct Choice {
 
 /// The cheapest setting in double precision for a wanted error: from the scene's table if there is one, else measured quickly.
 pub fn choose(path: &Path, scene: &SceneFile, error: f64) -> Result<Choice, Problem> {
-    let duration = scene.run()?.duration;
+    let (duration, own) = (scene.run()?.duration, scene.run()?.integrator);
     let wrong = |e: &Error| scene.problem(e);
     scene.with_core(|core| {
-        let bench = Bench::new(core).map_err(|e| wrong(&e))?;
-        let table = Table::new(&beside(path), mark(core));
+        let bench = Bench::new(core, own).map_err(|e| wrong(&e))?;
+        let table = Table::new(&beside(path), mark(core, own));
         let stored: Vec<(f64, Measured)> = table.rows()?.into_iter().filter(|(_, m)| !m.setting.single).collect();
         let longest = stored.iter().map(|(u, _)| *u).fold(0.0, f64::max);
         let rows: Vec<Measured> = stored.into_iter().filter(|(u, _)| *u == longest).map(|(_, m)| m).collect();
         let chosen = |m: &Measured, source: String, until: f64| Choice {
-            setting: m.setting,
+            setting: bench.limited(&m.setting),
             scale: m.setting.nodes as f64 / bench.nodes as f64,
             why: format!("{source}: {}; error {:.1e} over the first {} s", m.setting.text(), m.error, shown(until)),
         };
-        let own = table.reference(Some(longest))?.map_or(0.0, |r| r.error);
-        if let (Some(m), true) = (cheapest(&rows, error), own <= error) {
+        let tells = |r: Reference| r.error <= error && r.opinion.certifies(error);
+        let known = table.reference(Some(longest))?.is_some_and(tells);
+        if let (Some(m), true) = (cheapest(&rows, error), known) {
             return Ok(chosen(m, format!("from {}", beside(path).join("trade.csv").display()), longest));
         }
         let clock = Instant::now();
         let limit = Duration::from_secs(1);
-        let reference = reference::reference(&bench, duration, limit, error, |_| ()).map_err(|e| refused(scene, e))?;
+        let mut reference =
+            reference::reference(&bench, duration, limit, error, |_| ()).map_err(|e| refused(scene, e))?;
+        // Where the reference itself is not good enough, no setting will be. A tenth of the error may be the reference's own; what
+        // is measured against it is then as good as asked.
+        if reference.error <= error {
+            reference.opinion = second_opinion(&bench, &reference, 0.1 * error, limit * reference::PATIENCE);
+            if !reference.opinion.certifies(error) {
+                let (text, way) = reference.opinion.against(error);
+                return Err(Problem::file(path, text).hint(way));
+            }
+        }
         let study =
             Study { bench: &bench, reference: &reference, limit, quick: true, known: Vec::new(), enough: error };
         let rows = study.run(|_, _| (), |_| Ok::<(), Problem>(()))?;

@@ -59,7 +59,7 @@ fn missing_key() {
     );
     refuses(
         &changed("motion = { harmonic = [{ amplitude = 0.3, frequency = 2.0 }] }\n", ""),
-        "scene.toml:13: link 2 of body `fish` needs `motion` ({ harmonic = … }, { table = … } or { torque = … }; \
+        "scene.toml:13: link 2 of body `fish` needs `motion` ({ harmonic = … }, { table = … }, { channel = … } or { torque = … }; \
          a stiff joint is { locked = 0.0 }, a free one { torque = 0.0 })",
     );
     refuses("[run]\nduration = 1\n", "scene.toml: the scene has no body (add [[body]] with one or more [[body.link]])");
@@ -183,7 +183,10 @@ fn values_out_of_range() {
         "scene.toml:33: `output_interval` makes 500000000 rows (make output_interval larger)",
     );
     refuses(&changed("\"adams\"", "\"adam\""), "scene.toml:34: `method` cannot be `adam` (did you mean `adams`?)");
-    refuses(&changed("\"adams\"", "\"rk4\""), "scene.toml:34: `tolerance` does not go with method `rk4`");
+    refuses(
+        &changed("\"adams\"", "\"rk4\""),
+        "scene.toml:34: `tolerance` does not go with method `rk4` (its accuracy is that of its `step`)",
+    );
     refuses(
         &changed("{ ellipse = [1.0, 0.4] }", "{ polygon = [[0, 0], [1, 0]] }"),
         "scene.toml:10: `polygon` needs at least 3 points, but has 2",

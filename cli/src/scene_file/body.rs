@@ -4,7 +4,7 @@ use nekton::scene::{Drive, Joint, JointKind, Link, Mass, Root};
 
 use super::reader::{Item, Lines, Outcome, Section, suggest};
 use super::shape::{ShapeDef, nodes};
-use super::signal::SignalDef;
+use super::signal::{Purpose, SignalDef};
 
 /// A body: links in the user's order.
 #[derive(Clone, Debug)]
@@ -143,6 +143,24 @@ impl BodyDef {
         })
     }
 
+    /// Every function of time: of the root, then of the joints as listed.
+    pub fn signals(&self) -> impl Iterator<Item = &SignalDef> {
+        let joints = self.links.iter().filter_map(|l| match &l.joint.as_ref()?.drive {
+            DriveDef::Motion(signal) | DriveDef::Torque { torque: signal, .. } => Some(signal),
+            DriveDef::Locked(_) => None,
+        });
+        self.root.iter().flatten().chain(joints)
+    }
+
+    /// The same, to be changed.
+    pub fn signals_mut(&mut self) -> impl Iterator<Item = &mut SignalDef> {
+        let joints = self.links.iter_mut().filter_map(|l| match &mut l.joint.as_mut()?.drive {
+            DriveDef::Motion(signal) | DriveDef::Torque { torque: signal, .. } => Some(signal),
+            DriveDef::Locked(_) => None,
+        });
+        self.root.iter_mut().flatten().chain(joints)
+    }
+
     fn name_line(&self) -> usize {
         self.lines.find(&["name"]).unwrap_or(self.lines.own)
     }
@@ -165,7 +183,7 @@ impl BodyDef {
 
 fn read_root(item: &Item<'_>) -> Outcome<[SignalDef; 3]> {
     let section = item.section("`root`", &["x", "y", "theta"])?;
-    let get = |key| section.or(key, SignalDef::Constant(0.0), SignalDef::read);
+    let get = |key| section.or(key, SignalDef::Constant(0.0), |i| SignalDef::read(i, Purpose::Motion));
     Ok([get("x")?, get("y")?, get("theta")?])
 }
 
@@ -302,7 +320,7 @@ impl JointDef {
             (slider, JointKind::Slider { axis: direction, angle })
         };
         let motion = section.need("motion").map_err(|p| {
-            p.hint("{ harmonic = … }, { table = … } or { torque = … }; a stiff joint is { locked = 0.0 }, a free one { torque = 0.0 }")
+            p.hint("{ harmonic = … }, { table = … }, { channel = … } or { torque = … }; a stiff joint is { locked = 0.0 }, a free one { torque = 0.0 }")
         })?;
         Ok(Some(JointDef {
             parent: parent_index,
@@ -316,33 +334,46 @@ impl JointDef {
 
 impl DriveDef {
     fn read(item: &Item<'_>) -> Outcome<Self> {
-        const KEYS: &[&str] =
-            &["harmonic", "window", "table", "locked", "torque", "stiffness", "damping", "rest", "start"];
+        const KEYS: &[&str] = &[
+            "harmonic",
+            "window",
+            "table",
+            "slopes",
+            "channel",
+            "value",
+            "locked",
+            "torque",
+            "stiffness",
+            "damping",
+            "rest",
+            "start",
+        ];
         let section = item.section("`motion`", KEYS)?;
-        let (kind, value) = section.one_of(&["harmonic", "table", "torque", "locked"])?;
+        let (kind, value) = section.one_of(&["harmonic", "table", "channel", "torque", "locked"])?;
         let strangers: &[&str] = match kind {
-            "torque" => &["window"],
-            "locked" => &["window", "stiffness", "damping", "rest", "start"],
+            "torque" => &["window", "slopes", "value"],
+            "locked" => &["window", "slopes", "value", "stiffness", "damping", "rest", "start"],
             _ => &["stiffness", "damping", "rest", "start"],
         };
         if let Some(other) = strangers.iter().find_map(|k| section.get(k)) {
-            let hint = if other.key == "window" {
-                "goes inside: torque = { harmonic = …, window = … }"
-            } else {
-                "they go with `torque`"
+            let hint = match other.key {
+                "window" => "goes inside: torque = { harmonic = …, window = … }",
+                "slopes" => "goes inside: torque = { table = …, slopes = … }",
+                "value" => "goes inside: torque = { channel = …, value = … }",
+                _ => "they go with `torque`",
             };
             return Err(other.problem(format!("does not go with `{kind}`")).hint(hint));
         }
         Ok(match kind {
             "locked" => DriveDef::Locked(value.number()?),
             "torque" => DriveDef::Torque {
-                torque: SignalDef::read(&value)?,
+                torque: SignalDef::read(&value, Purpose::Torque)?,
                 stiffness: section.or("stiffness", 0.0, Item::not_negative)?,
                 damping: section.or("damping", 0.0, Item::not_negative)?,
                 rest: section.or("rest", 0.0, Item::number)?,
                 start: section.or("start", [0.0; 2], Item::pair)?,
             },
-            _ => DriveDef::Motion(SignalDef::from_section(&section)?),
+            _ => DriveDef::Motion(SignalDef::from_section(&section, Purpose::Motion)?),
         })
     }
 

@@ -6,9 +6,11 @@ use std::time::{Duration, Instant};
 use nekton::scalar::Real;
 use nekton::scene::{Description, ForceFormula, Quadrature, Scene};
 use nekton::status::{Error, Place, Status};
-use nekton::{Formulation, ModelBuf, Plan, SimBuf};
+use nekton::{Formulation, Method, ModelBuf, Plan, SimBuf};
 
+use super::drives::Stride;
 use super::setting::{Setting, Variant, counts, method, scaled, unit};
+use crate::scene_file::Integrator;
 
 /// Times at which trajectories are compared, after the start.
 pub const OUTPUTS: usize = 16;
@@ -58,11 +60,13 @@ pub struct Bench<'a> {
     radii: Vec<f64>,
     /// What is computed with the scene's own settings.
     pub plan: Plan,
+    /// The scene's own integrator: the limits of its steps hold for all runs.
+    own: Integrator,
 }
 
 impl<'a> Bench<'a> {
-    /// Compiles the scene once.
-    pub fn new(scene: &'a Scene<'a, f64>) -> Result<Self, Error> {
+    /// Compiles the scene once. `own` is its integrator.
+    pub fn new(scene: &'a Scene<'a, f64>, own: Integrator) -> Result<Self, Error> {
         let model = ModelBuf::new(scene)?;
         let view = model.view();
         let radius = |place: Place| {
@@ -77,6 +81,7 @@ impl<'a> Bench<'a> {
             plan: *view.plan(),
             single: super::single::single(scene),
             scene,
+            own,
         })
     }
 
@@ -132,12 +137,80 @@ impl<'a> Bench<'a> {
             plan: Plan::default(),
             ended: Ended::Failed(error),
         };
+        let setting = &self.limited(setting);
         let result = if setting.single {
             run(&self.variant(&self.single, setting), setting, until, limit, shift)
         } else {
             run(&self.variant(self.scene, setting), setting, until, limit, shift)
         };
         result.unwrap_or_else(failed)
+    }
+
+    /// A setting with the scene's own limits of steps.
+    pub fn limited(&self, setting: &Setting) -> Setting {
+        Setting { integrator: setting.integrator.with_limits_of(self.own), ..*setting }
+    }
+
+    /// The path by the implicit method of order 6 with steps that are told beforehand, as many times shorter as `finer` says;
+    /// `None` if that takes more than `limit`. It shares neither estimates nor choices of steps with [`Bench::once`].
+    ///
+    /// # Errors
+    /// As [`nekton::Sim::advance`]: longer steps than the motion bears fail too.
+    pub fn stride(
+        &self,
+        nodes: usize,
+        strides: &[Stride],
+        finer: usize,
+        limit: Duration,
+    ) -> Result<Option<Path>, Error> {
+        let setting = Setting {
+            quadrature: Quadrature::Graded,
+            force: ForceFormula::ExactGradient,
+            single: false,
+            integrator: self.own,
+            nodes,
+        };
+        let model = Arc::new(ModelBuf::new(&self.variant(self.scene, &setting))?);
+        let until = strides.last().map_or(0.0, |s| s.to);
+        let clock = Instant::now();
+        let mut sim: Option<(f64, SimBuf<f64>)> = None;
+        let mut path: Path = Vec::new();
+        for stride in strides {
+            let step = (stride.to - stride.from) / (stride.steps * finer) as f64;
+            let same = sim.as_ref().is_some_and(|(s, _)| (s / step - 1.0).abs() < 1e-9);
+            if !same {
+                let mut next = SimBuf::new(model.clone(), Method::Gauss6 { step })?;
+                if let Some((_, before)) = &mut sim {
+                    let before = before.view();
+                    next.view().set_state(before.time(), before.state())?;
+                }
+                sim = Some((step, next));
+            }
+            let Some((_, buf)) = &mut sim else { break };
+            let mut view = buf.view();
+            if path.is_empty() {
+                path.push(view.positions().to_vec());
+            }
+            for k in 1..stride.steps * finer {
+                view.step()?;
+                if k % 64 == 0 && clock.elapsed() > limit {
+                    return Ok(None);
+                }
+            }
+            view.advance(stride.to)?;
+            if clock.elapsed() > limit {
+                return Ok(None);
+            }
+            if stride.to == until * path.len() as f64 / OUTPUTS as f64 {
+                path.push(view.positions().to_vec());
+            }
+        }
+        Ok((path.len() == OUTPUTS + 1).then_some(path))
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene<'a, f64> {
+        self.scene
     }
 
     fn variant<'v, R>(&'v self, base: &'v Scene<'v, R>, setting: &Setting) -> Variant<'v, R> {
@@ -233,7 +306,6 @@ fn run<R: Real>(
 
 /// Fixed steps must end at every look.
 fn looks(setting: &Setting, until: f64) -> usize {
-    use crate::scene_file::Integrator;
     match setting.integrator {
         Integrator::Adams { .. } => 1,
         _ => {

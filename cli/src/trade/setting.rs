@@ -54,7 +54,7 @@ pub fn method_name(integrator: Integrator) -> &'static str {
 pub fn parameter(integrator: Integrator) -> f64 {
     match integrator {
         Integrator::Rk4 { step } | Integrator::Abm4 { step } | Integrator::Gauss6 { step } => step,
-        Integrator::Adams { tolerance } => tolerance,
+        Integrator::Adams { tolerance, .. } => tolerance,
     }
 }
 
@@ -64,7 +64,7 @@ pub fn integrator(name: &str, value: f64) -> Option<Integrator> {
         "rk4" => Integrator::Rk4 { step: value },
         "abm4" => Integrator::Abm4 { step: value },
         "gauss6" => Integrator::Gauss6 { step: value },
-        "adams" => Integrator::Adams { tolerance: value },
+        "adams" => Integrator::adams(value),
         _ => return None,
     })
 }
@@ -82,7 +82,12 @@ pub fn method<R: Real>(integrator: Integrator, unit: f64) -> Method<R> {
         Integrator::Rk4 { step } => Method::Rk4 { step: R::lit(step) },
         Integrator::Abm4 { step } => Method::Abm4 { step: R::lit(step) },
         Integrator::Gauss6 { step } => Method::Gauss6 { step: R::lit(step) },
-        Integrator::Adams { tolerance } => Method::adams(R::lit(tolerance), R::lit(tolerance * unit)),
+        Integrator::Adams { tolerance, max_step, first_step } => Method::Adams {
+            relative: R::lit(tolerance),
+            absolute: R::lit(tolerance * unit),
+            max_step: R::lit(max_step),
+            first_step: R::lit(first_step),
+        },
     }
 }
 

@@ -109,7 +109,7 @@ impl Study<'_> {
         for (quadrature, force, single) in self.families() {
             let (mut best, mut idle, mut beaten) = (f64::INFINITY, 0, 0);
             for (k, nodes) in counts.iter().enumerate() {
-                let any = Integrator::Adams { tolerance: 0.0 };
+                let any = Integrator::adams(0.0);
                 let setting = Setting { quadrature, force, single, integrator: any, nodes: *nodes };
                 let [q, f, p, _] = setting.names();
                 tell(format!("{nodes} nodes, {q}, {f}, {p}"), group + k as u64);
@@ -141,7 +141,7 @@ impl Study<'_> {
     /// Every integrator with its steps or tolerances, from loose to tight.
     fn ladders(&self, single: bool) -> Vec<Vec<Integrator>> {
         let last = if single { 6 } else { 12 };
-        let mut all = vec![(2..=last).map(|e| Integrator::Adams { tolerance: 10f64.powi(-e) }).collect()];
+        let mut all = vec![(2..=last).map(|e| Integrator::adams(10f64.powi(-e))).collect()];
         if !self.quick {
             let steps = (0..HALVINGS).map(|k| self.reference.until / (OUTPUTS << k) as f64);
             all.push(steps.clone().map(|step| Integrator::Rk4 { step }).collect());

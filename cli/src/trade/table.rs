@@ -6,18 +6,26 @@ use std::path::{Path, PathBuf};
 
 use nekton::scene::{ForceFormula, Quadrature, Scene};
 
-use super::reference::Reference;
+use super::reference::{Opinion, Reference};
 use super::setting::{Setting, integrator, parameter};
 use super::study::{Measured, Status};
-use crate::scene_file::Problem;
+use crate::scene_file::{Integrator, Problem};
 
 const TRADE: &str = "scene,until,quadrature,force,precision,integrator,step_or_tolerance,nodes,unknowns,status,error,\
     seconds_per_second,evaluations_per_second";
-const REFERENCE: &str = "scene,until,nodes,error,travel,t,positions";
+const REFERENCE: &str = "scene,until,nodes,error,difference,own,travel,t,positions";
+/// Of a time when there was no second opinion: such a reference is made anew.
+const WITHOUT_OPINION: &str = "scene,until,nodes,error,travel,t,positions";
 
-/// A mark of everything that a scene says about the motion (FNV-1a of its compiled description), and of this version.
-pub fn mark(scene: &Scene<'_, f64>) -> String {
-    let text = format!("{scene:?}{}", env!("CARGO_PKG_VERSION"));
+/// A mark of everything that a scene says about the motion (FNV-1a of its compiled description), of the limits of its steps, and
+/// of this version.
+pub fn mark(scene: &Scene<'_, f64>, own: Integrator) -> String {
+    let mut text = format!("{scene:?}{}", env!("CARGO_PKG_VERSION"));
+    if let Integrator::Adams { max_step, first_step, .. } = own
+        && max_step + first_step > 0.0
+    {
+        text += &format!("{max_step:e},{first_step:e}");
+    }
     let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x100_0000_01b3));
     format!("{hash:016x}")
 }
@@ -77,13 +85,18 @@ impl Table {
     /// The reference of this scene to a given time, or to any if `None`.
     pub fn reference(&self, until: Option<f64>) -> Result<Option<Reference>, Problem> {
         let path = self.folder.join("reference.csv");
+        if lines(&path, WITHOUT_OPINION).is_ok() {
+            return Ok(None);
+        }
         let Some(lines) = lines(&path, REFERENCE)? else { return Ok(None) };
         let mut found: Option<Reference> = None;
         for (number, line) in lines.iter().enumerate().filter(|(_, l)| l.starts_with(&self.mark)) {
             let bad = || Problem::line(&path, number + 2, "is not a row of this table");
             let cells: Vec<f64> =
                 line.split(',').skip(1).map(str::parse).collect::<Result<_, _>>().map_err(|_| bad())?;
-            let [end, nodes, error, travel, _t, positions @ ..] = cells.as_slice() else { return Err(bad()) };
+            let [end, nodes, error, difference, own, travel, _t, positions @ ..] = cells.as_slice() else {
+                return Err(bad());
+            };
             if until.is_some_and(|u| u != *end) {
                 continue;
             }
@@ -91,6 +104,7 @@ impl Table {
                 until: *end,
                 nodes: *nodes as usize,
                 error: *error,
+                opinion: Opinion { difference: *difference, own: *own },
                 travel: *travel,
                 path: Vec::new(),
             });
@@ -106,9 +120,9 @@ impl Table {
         let steps = (reference.path.len() - 1).max(1) as f64;
         let mut text = format!("{REFERENCE}\n");
         for (k, row) in reference.path.iter().enumerate() {
-            let Reference { until, nodes, error, travel, .. } = reference;
+            let Reference { until, nodes, error, travel, opinion: Opinion { difference, own }, .. } = reference;
             let t = until * k as f64 / steps;
-            text += &format!("{},{until:e},{nodes},{error:e},{travel:e},{t:e}", self.mark);
+            text += &format!("{},{until:e},{nodes},{error:e},{difference:e},{own:e},{travel:e},{t:e}", self.mark);
             row.iter().for_each(|x| text += &format!(",{x:.16e}"));
             text.push('\n');
         }
