@@ -133,6 +133,7 @@ impl<R: Real> Adams<R> {
             time_rest,
             prepared,
             jumped,
+            doubtful,
             proposed,
             order,
             starting,
@@ -155,6 +156,7 @@ impl<R: Real> Adams<R> {
         io.finite("time_rest", time_rest);
         io.flag("prepared", prepared);
         io.flag("jumped", jumped);
+        io.count("doubtful", doubtful, MAX_ORDER + 1);
         io.at_least_zero("proposed", proposed);
         io.count("order", order, MAX_ORDER);
         io.require("order", *order > 0);

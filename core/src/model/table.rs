@@ -224,7 +224,10 @@ impl<R: Real> Rows<'_, R> {
             None => self.rows_until(t),
         };
         let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
-        (first..last).take_while(|k| self.time(*k) < end).find(|k| self.matters(motion, *k, end - t)).map(|k| self.time(k))
+        (first..last)
+            .take_while(|k| self.time(*k) < end)
+            .find(|k| self.matters(motion, *k, end - t))
+            .map(|k| self.time(k))
     }
 
     /// Whether the row that a time means is such a one.
@@ -284,7 +287,11 @@ impl<R: Real> Rows<'_, R> {
                 }
                 let piece = self.piece(*k);
                 // A kink of ü inside a step is half unseen: the step ends there, or is so short that it does not matter.
-                if motion && *k > 0 && self.time(*k) > t && self.kink(*k) * limit > R::lit(0.01) * first.abs().max(last.abs()) {
+                if motion
+                    && *k > 0
+                    && self.time(*k) > t
+                    && self.kink(*k) * limit > R::lit(0.01) * first.abs().max(last.abs())
+                {
                     return true;
                 }
                 let allowed = allowed + piece.rounding(motion);
@@ -333,7 +340,8 @@ pub(crate) fn channel_kink<R: Real>(motion: bool, t: R, old: &[R], new: &[R]) ->
     };
     let change = slope(&old, Moment { t, after: false }) - slope(&new, Moment { t, after: true });
     let size = |rows: &Rows<'_, R>, k: usize| if motion { rows.row(k)[3].abs() } else { rows.row(k)[1].abs() };
-    let largest = [(&old, 0), (&old, 1), (&new, 0), (&new, 1)].into_iter().fold(R::zero(), |m, (rows, k)| m.max(size(rows, k)));
+    let largest =
+        [(&old, 0), (&old, 1), (&new, 0), (&new, 1)].into_iter().fold(R::zero(), |m, (rows, k)| m.max(size(rows, k)));
     change.abs() * (new.time(1) - new.time(0)) > R::lit(1e-3) * largest
 }
 

@@ -151,6 +151,7 @@ impl<R: Real> Progress<R> {
             watch,
             missed,
             torn,
+            arrived,
             balance,
         } = self;
         each_of_method(method, io);
@@ -180,6 +181,7 @@ impl<R: Real> Progress<R> {
         io.flag("torn", &mut torn_any);
         io.count("torn", &mut torn_which, coordinates.saturating_sub(1));
         *torn = torn_any.then_some(torn_which);
+        io.flag("arrived", arrived);
         each_of_balance(balance, io);
         let mut which = match watch {
             Watch::Nothing => 0,
