@@ -59,9 +59,18 @@ impl Random {
             }
             3 if torque => {
                 let (half, more) = (pause + 0.5 * pulse, if n.chance(0.5) { -size } else { 0.0 });
-                rows = [(0.0, 0.0), (pause, 0.0), (pause, size), (half, size), (half, more), (end, more), (end, 0.0), (2.0 * end, 0.0)]
-                    .map(|(t, u)| [t, u, 0.0, 0.0])
-                    .to_vec();
+                rows = [
+                    (0.0, 0.0),
+                    (pause, 0.0),
+                    (pause, size),
+                    (half, size),
+                    (half, more),
+                    (end, more),
+                    (end, 0.0),
+                    (2.0 * end, 0.0),
+                ]
+                .map(|(t, u)| [t, u, 0.0, 0.0])
+                .to_vec();
                 pieces.extend([[pause, half, pulse / 100.0], [half, end, pulse / 100.0]]);
                 "jumps"
             }
@@ -72,7 +81,10 @@ impl Random {
                 rows = [(0.0, 0.0), (pause, 0.0), (first, size), (second, bend), (end, back), (end + 50.0, back)]
                     .map(|(t, u)| [t, u, 0.0, 0.0])
                     .to_vec();
-                pieces.extend([[pause, first, 0.0], [first, second, 0.0], [second, end, 0.0]].map(|[a, b, _]| [a, b, (b - a) / 100.0]));
+                pieces.extend(
+                    [[pause, first, 0.0], [first, second, 0.0], [second, end, 0.0]]
+                        .map(|[a, b, _]| [a, b, (b - a) / 100.0]),
+                );
                 "table"
             }
         };
@@ -139,7 +151,8 @@ pub struct Judged {
 }
 
 /// Names of the columns of [`Judged::row`].
-pub const HEADER: &str = "scene,drive,torque,root,neighbour,pause,pulse,method,error_in_tolerances,evaluations,notice\n";
+pub const HEADER: &str =
+    "scene,drive,torque,root,neighbour,pause,pulse,method,error_in_tolerances,evaluations,notice\n";
 
 /// Scene number `k` of the seeded sequence, by `adams` at once and in calls of ten steps.
 pub fn judge(k: u64) -> Result<Vec<Judged>> {
@@ -168,7 +181,8 @@ pub fn judge(k: u64) -> Result<Vec<Judged>> {
             }
         }
         let size = reference.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-        let error = sim.state().iter().zip(&reference).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / (size * TOLERANCE);
+        let error =
+            sim.state().iter().zip(&reference).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs())) / (size * TOLERANCE);
         let notice = noticed.map_or(String::new(), |(_, e)| e.status.name().into());
         let mut row = String::new();
         let Random { kind, torque, root, neighbour, pause, pulse, .. } = &scene;

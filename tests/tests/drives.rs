@@ -188,7 +188,14 @@ fn fixed_steps_that_a_drive_outruns_name_the_joint_and_the_step_it_takes() {
 
 #[test]
 fn a_jump_of_torque_is_met_by_every_method_as_by_two_runs_that_part_there() {
-    let steps = [at_rest(0.0, 0.3), at_rest(0.5, 0.3), at_rest(0.5, -0.4), at_rest(1.2, -0.4), at_rest(1.2, 0.1), at_rest(9.0, 0.1)];
+    let steps = [
+        at_rest(0.0, 0.3),
+        at_rest(0.5, 0.3),
+        at_rest(0.5, -0.4),
+        at_rest(1.2, -0.4),
+        at_rest(1.2, 0.1),
+        at_rest(9.0, 0.1),
+    ];
     let scene_of = |signal, look: &mut dyn FnMut(&Scene<'_, f64>)| {
         let one = ellipse(0.5, 0.2, 32);
         let links = [one, hinged(one, 0, [-0.7, 0.0], [0.7, 0.0], torque(signal, 0.3, 0.05))];

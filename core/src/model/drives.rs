@@ -50,9 +50,8 @@ impl<'a, R: Real> Model<'a, R> {
 
     /// First time strictly within (t, end) at which a drive is less smooth than in between.
     pub(crate) fn next_kink(&self, t: R, end: R, channels: &[R]) -> R {
-        self.moving().fold(end, |end, (_, c, motion)| {
-            c.signal.next_kink(motion, t, end, self.store, channels).unwrap_or(end)
-        })
+        self.moving()
+            .fold(end, |end, (_, c, motion)| c.signal.next_kink(motion, t, end, self.store, channels).unwrap_or(end))
     }
 
     /// The worst that a drive does at a time.

@@ -224,16 +224,18 @@ impl<R: Real> Rows<'_, R> {
         let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
         let h = end - t;
         let size = |k: usize| if motion { self.row(k)[3].abs() } else { self.row(k)[1].abs() };
-        (first..last).take_while(|k| self.time(*k) < end).find(|k| {
-            let (row, flat) = (*k, |k: usize| self.piece(k).c.iter().all(|c| *c == R::zero()));
-            if row == 0 || row + 1 == self.count() {
-                return self.count() > 1 && !flat(row.saturating_sub(usize::from(row > 0)));
-            }
-            let jump = self.kink(row) * if motion { h } else { h * h * h };
-            let sizes = [row - 1, row, row + 1].map(size).into_iter().fold(R::zero(), R::max);
-            jump > R::lit(1e-3) * sizes
-        })
-        .map(|k| self.time(k))
+        (first..last)
+            .take_while(|k| self.time(*k) < end)
+            .find(|k| {
+                let (row, flat) = (*k, |k: usize| self.piece(k).c.iter().all(|c| *c == R::zero()));
+                if row == 0 || row + 1 == self.count() {
+                    return self.count() > 1 && !flat(row.saturating_sub(usize::from(row > 0)));
+                }
+                let jump = self.kink(row) * if motion { h } else { h * h * h };
+                let sizes = [row - 1, row, row + 1].map(size).into_iter().fold(R::zero(), R::max);
+                jump > R::lit(1e-3) * sizes
+            })
+            .map(|k| self.time(k))
     }
 
     /// See [`crate::model::signal::SignalRecord::seen`]. O(rows in the step).
@@ -275,7 +277,11 @@ impl<R: Real> Rows<'_, R> {
                 }
                 let piece = self.piece(*k);
                 // A kink of ü inside a step is half unseen: the step ends there, or is so short that it does not matter.
-                if motion && *k > 0 && self.time(*k) > t && self.kink(*k) * limit > R::lit(0.01) * first.abs().max(last.abs()) {
+                if motion
+                    && *k > 0
+                    && self.time(*k) > t
+                    && self.kink(*k) * limit > R::lit(0.01) * first.abs().max(last.abs())
+                {
                     return true;
                 }
                 let allowed = allowed + piece.rounding(motion);
