@@ -151,8 +151,8 @@ impl<R: Real> Progress<R> {
             watch,
             missed,
             torn,
-            arrived,
             balance,
+            arrived,
         } = self;
         each_of_method(method, io);
         io.finite("time", time);
@@ -181,8 +181,8 @@ impl<R: Real> Progress<R> {
         io.flag("torn", &mut torn_any);
         io.count("torn", &mut torn_which, coordinates.saturating_sub(1));
         *torn = torn_any.then_some(torn_which);
-        io.flag("arrived", arrived);
         each_of_balance(balance, io);
+        io.flag("arrived", arrived);
         let mut which = match watch {
             Watch::Nothing => 0,
             Watch::Past => 1,
@@ -382,7 +382,7 @@ impl<R: Real> Sim<'_, R> {
             array.iter_mut().zip(&mut reals).for_each(|(x, new)| *x = new);
         }
         copy(self.evaluation.coordinates.channels, self.state.commands);
-        self.evaluation.kept.shown = false;
+        (self.evaluation.kept.shown, self.evaluation.kept.before) = (false, self.progress.arrived);
         Ok(())
     }
 }
