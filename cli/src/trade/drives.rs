@@ -2,7 +2,8 @@
 
 use nekton::scene::{Drive, Root, Scene, Signal};
 
-use super::measure::OUTPUTS;
+/// Times at which trajectories are compared, after the start.
+pub const OUTPUTS: usize = 16;
 
 /// Steps in a period of a harmonic …
 const PERIOD: f64 = 8.0;

@@ -8,12 +8,10 @@ use nekton::scene::{Description, ForceFormula, Quadrature, Scene};
 use nekton::status::{Error, Place, Status};
 use nekton::{Formulation, Method, ModelBuf, Plan, SimBuf};
 
-use super::drives::Stride;
+use super::drives::{OUTPUTS, Stride};
 use super::setting::{Setting, Variant, counts, method, scaled, unit};
 use crate::scene_file::Integrator;
 
-/// Times at which trajectories are compared, after the start.
-pub const OUTPUTS: usize = 16;
 /// With a fixed step the clock is looked at this often between two of them.
 const LOOKS: usize = 8;
 /// Runs shorter than this are repeated and the shortest time taken.

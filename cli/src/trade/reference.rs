@@ -6,7 +6,8 @@ use nekton::scene::{ForceFormula, Quadrature};
 use nekton::status::Error;
 
 use super::drives::strides;
-use super::measure::{Bench, Ended, OUTPUTS, Path};
+use super::drives::OUTPUTS;
+use super::measure::{Bench, Ended, Path};
 use super::setting::Setting;
 use crate::scene_file::Integrator;
 

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use nekton::scene::{ForceFormula, Quadrature};
 
-use super::measure::{Bench, Ended, OUTPUTS, Run};
+use super::drives::OUTPUTS;
+use super::measure::{Bench, Ended, Run};
 use super::reference::Reference;
 use super::setting::Setting;
 use crate::scene_file::Integrator;

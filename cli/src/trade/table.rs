@@ -112,7 +112,7 @@ impl Table {
                 reference.path.push(positions.to_vec());
             }
         }
-        Ok(found.filter(|r| r.path.len() == super::measure::OUTPUTS + 1))
+        Ok(found.filter(|r| r.path.len() == super::drives::OUTPUTS + 1))
     }
 
     /// Writes the reference, in place of any other.
