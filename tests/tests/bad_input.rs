@@ -394,3 +394,55 @@ fn time_only_goes_forward() {
         assert_eq!(sim.time(), 0.5);
     }
 }
+
+#[test]
+fn what_is_inside_another_boundary_is_refused_and_what_is_beside_it_is_not() {
+    // A rod in every direction, and a small disc at points of which the rod's equation tells where they are.
+    let (a, b, small) = (1.0, 0.2, 0.01);
+    let rod = [Link { shape: Shape::Ellipse { a, b }, nodes: 64, ..LINK }];
+    let disc = [Link { shape: disc(small), nodes: 8, ..LINK }];
+    let mut seen = [0; 2];
+    for k in 0..160 {
+        let (turn, radius, angle) = (0.7 * f64::from(k), 0.05 + 0.006 * f64::from(k), 2.4 * f64::from(k * k));
+        let (x, y) = (radius * angle.cos(), radius * angle.sin());
+        let size = (x / a).powi(2) + (y / b).powi(2);
+        if (size.sqrt() - 1.0).abs() < 0.15 {
+            continue;
+        }
+        let (sin, cos) = turn.sin_cos();
+        let at = [3.0 + cos * x - sin * y, -2.0 + sin * x + cos * y, 0.0];
+        let bodies = [body(&rod, [3.0, -2.0, turn], [0.0; 3]), body(&disc, at, [0.0; 3])];
+        let scene = Scene { bodies: &bodies, ..FLUID };
+        let told = ModelBuf::new(&scene).and_then(|m| SimBuf::new(Arc::new(m), Method::Rk4 { step: 0.01 }));
+        let inside = size < 1.0;
+        seen[usize::from(inside)] += 1;
+        assert_eq!(told.err().map(|e| e.status), inside.then_some(Status::Overlap), "{x} {y} turned by {turn}");
+    }
+    assert!(seen.into_iter().all(|count| count > 20), "{seen:?}");
+}
+
+#[test]
+fn of_points_equally_far_too_far_the_first_is_named() {
+    let far = [[0.0, 0.0], [1e200, 0.0], [0.0, 1e200]];
+    for shape in [Shape::Polygon { vertices: &far, radius: None }, Shape::Curve { points: &far }] {
+        let links = [Link { shape, ..LINK }];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        let error = refusal(&Scene { bodies: &bodies, ..FLUID });
+        assert_eq!((error.status, error.value), (Status::OutOfRange, 1.0), "{error}");
+    }
+}
+
+#[test]
+fn the_least_tolerance_in_time_is_taken_and_the_next_smaller_refused() {
+    let links = [LINK];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+    let model = Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..FLUID }).unwrap());
+    let told = |relative, absolute| {
+        SimBuf::new(Arc::clone(&model), Method::Adams { relative, absolute }).err().map(|error| error.status)
+    };
+    let least = 4.0 * f64::EPSILON;
+    assert_eq!(told(least, 1e-9), None);
+    assert_eq!(told(least.next_down(), 1e-9), Some(Status::BadTolerance));
+    assert_eq!(told(1e-9, f64::MIN_POSITIVE), None);
+    assert_eq!(told(1e-9, 0.0), Some(Status::BadTolerance));
+}

@@ -1,6 +1,6 @@
 //! Circulation against closed forms.
 
-use nekton::scene::{CirculationModel, Link, Mass, Scene};
+use nekton::scene::{CirculationModel, Link, Mass, Scene, Shape};
 use nekton_tests::*;
 use std::f64::consts::PI;
 
@@ -158,5 +158,22 @@ fn lift_of_a_disc_is_rho_gamma_v_and_does_no_work() {
         let lift = times(&g, &VELOCITY);
         let k = FLUID * GAMMA;
         assert_close(&lift, &[-k * VELOCITY[1], k * VELOCITY[0], 0.0], 1e-15);
+    }
+}
+
+#[test]
+fn lift_of_a_body_that_bends_round_its_own_middle_is_rho_gamma_v_too() {
+    // The mean of its nodes lies in the fluid, where no vortex may be put.
+    let bay = [[-1.0, -0.8], [1.0, -0.8], [1.0, -0.4], [-0.6, -0.4], [-0.6, 0.4], [1.0, 0.4], [1.0, 0.8], [-1.0, 0.8]];
+    let links = [Link { circulation: GAMMA, ..link(Shape::Polygon { vertices: &bay, radius: Some(0.1) }, BODY, 400) }];
+    let bodies = [body(&links, POSE, VELOCITY)];
+    for shortcuts in [true, false] {
+        let mut sim = at_start(&Scene { shortcuts, bodies: &bodies, ..Scene::new(FLUID, 0.0) });
+        let g = matrix(&mut sim.view(), |sim, out| sim.gyroscopic(out));
+        let k = FLUID * GAMMA;
+        println!("{:e}", times(&g, &[VELOCITY[0], VELOCITY[1], 0.0])[0] / (-k * VELOCITY[1]) - 1.0);
+        let lift = times(&g, &[VELOCITY[0], VELOCITY[1], 0.0]);
+        assert_close(&lift[..2], &[-k * VELOCITY[1], k * VELOCITY[0]], 1e-9);
+        assert!(sim.view().resolution().unwrap().quadrature < 1e-6);
     }
 }

@@ -383,3 +383,76 @@ fn prescribed_root_cannot_be_led_through_a_body() {
     let led = Body { root: Root::Prescribed([Signal::Table(&path), still, still]), ..body(&small, [0.0; 3], [0.0; 3]) };
     jump(led, body(&small, [1.0, 0.05, 0.0], [0.0; 3]), &[Method::Rk4 { step: 0.1 }, Method::Abm4 { step: 0.1 }]);
 }
+
+#[test]
+fn a_state_that_is_set_is_shown_whatever_was_asked_before() {
+    each_formulation(|scene| {
+        each_method(|method| {
+            let (mut first, mut second) = (simulation(scene, method), simulation(scene, method));
+            let (mut first, mut second) = (first.view(), second.view());
+            first.advance(0.3).unwrap();
+            // Now the buffers hold everything of another state.
+            let before = shown(&mut second);
+            let mut force = vec![0.0; second.positions().len()];
+            second.accelerations(&mut force).unwrap();
+            second.set_state(0.3, first.state()).unwrap();
+            assert_eq!(shown(&mut first), shown(&mut second), "{method:?}");
+            assert_ne!(before, shown(&mut second));
+        });
+    });
+}
+
+#[test]
+fn a_slide_along_a_wall_is_followed_for_two_hundred_gaps() {
+    // Two plates, one of which slides at a constant gap. A path that cannot be followed is refused.
+    let gap = 0.004;
+    let plate = |width, angle| (Shape::Rectangle { width, height: 0.2, radius: Some(0.02) }, angle);
+    let (long, _) = plate(4.0, 0.0);
+    let small = [link(disc(0.1), 1.0, 16)];
+    let obstacles = [wall(long, [0.0, -0.1], 0.0, 256)];
+    for (gaps, passes) in [(100.0, true), (199.5, true), (200.5, false), (300.0, false)] {
+        let h = 0.1;
+        let bodies = [body(&small, [-0.5 * gaps * gap, 0.1 + gap, 0.0], [gaps * gap / h, 0.0, 0.0])];
+        let scene = Scene { obstacles: &obstacles, bodies: &bodies, ..Scene::new(0.0, 0.0) };
+        let mut sim = simulation(&scene, Method::Rk4 { step: h });
+        let mut sim = sim.view();
+        println!("{:e}", sim.gap().distance / gap - 1.0);
+        let told = sim.step().err().map(|error| error.status);
+        println!("{:e}", sim.gap().distance / gap - 1.0);
+        assert_eq!(told, (!passes).then_some(Status::Contact), "{gaps}");
+    }
+}
+
+#[test]
+fn each_channel_moves_its_own_joint() {
+    let drive =
+        |start| Drive::Torque { torque: Signal::Channel, stiffness: 0.0, damping: 0.0, rest: 0.0, start: [start, 0.0] };
+    let chain = [
+        segment(),
+        hinged(segment(), 0, [-0.75, 0.0], [0.75, 0.0], Drive::Motion(Signal::Channel)),
+        hinged(segment(), 1, [-0.75, 0.0], [0.75, 0.0], drive(0.2)),
+        hinged(segment(), 2, [-0.75, 0.0], [0.75, 0.0], Drive::Motion(Signal::Channel)),
+    ];
+    let bodies = [body(&chain, [0.0; 3], [0.0; 3])];
+    let mut sim = at_start(&Scene { bodies: &bodies, ..Scene::new(1.1, 0.0) });
+    let mut sim = sim.view();
+    // Quintics through their ends: half way are the means of values, and 15/8 of the mean slope.
+    let ends = [[0.1, 0.3], [0.7, 0.9], [-0.2, 0.4]];
+    for order in [[0, 1, 2], [2, 0, 1]] {
+        for channel in order {
+            let [u0, u1] = ends[channel];
+            sim.set_channel(channel, [-1.0, u0, 0.0, 0.0], [1.0, u1, 0.0, 0.0]).unwrap();
+        }
+        let (mut nu, mut power) = ([f64::NAN; 3], [f64::NAN; 3]);
+        sim.joint_torques(&mut nu, &mut power).unwrap();
+        assert_near(nu[1], 0.8, 1e-15);
+        let mut out = vec![0.0; sim.state().len()];
+        let y = sim.state().to_vec();
+        sim.rhs(0.0, &y, &mut out).unwrap();
+        sim.set_state(0.0, &y).unwrap();
+        let (mut u, mut du) = ([f64::NAN; 3], [f64::NAN; 3]);
+        sim.joint_values(&mut u, &mut du);
+        assert_close(&u, &[0.2, 0.2, 0.1], 1e-15);
+        assert_close(&du, &[0.2 * 15.0 / 16.0, 0.0, 0.6 * 15.0 / 16.0], 1e-15);
+    }
+}

@@ -370,3 +370,57 @@ fn indicator_of_circulation_is_ten_times_the_error_of_its_fluxes() {
     assert_near(sim.resolution().unwrap().quadrature / exact, 1.0, 1e-8);
     assert_near(sim.indicators().unwrap().quadrature / exact, 1.0, 1e-8);
 }
+
+#[test]
+fn indicators_of_the_whole_mass_and_force_fall_to_rounding_with_the_nodes() {
+    // Nothing here mirrors itself, so that neither indicator is blind.
+    let shapes = [Shape::Ellipse { a: 1.0, b: 0.6 }, Shape::Star { radius: 0.7, amplitude: 0.1, lobes: 3 }];
+    let at = [[0.0, 0.0, 0.3], [1.5, 1.3, 0.5]];
+    let v = [[0.3, -0.2, 0.4], [-0.5, 0.1, -0.6]];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        let [coarse, fine] = [16, 160].map(|nodes| pair(&shapes, at, v, nodes, quadrature).full);
+        println!("{coarse:?} {fine:?}");
+        assert!(coarse.mass > 1e-6 && coarse.force > 1e-6 && coarse.quadrature > 1e-6, "{coarse:?}");
+        assert!(fine.mass < 1e-11 && fine.force < 1e-11 && fine.quadrature < 1e-11, "{fine:?}");
+        // At rest there is no force.
+        assert_eq!(pair(&shapes, at, [[0.0; 3]; 2], 16, quadrature).full.force, 0.0);
+    }
+}
+
+#[test]
+fn an_ellipse_alone_gets_the_nodes_that_its_error_in_closed_form_asks_for() {
+    // By the plain rule the density of an ellipse alone is wrong by 4 qᴺ, q = (a − b)/(a + b).
+    for aspect in [5.0_f64, 8.0, 20.0, 40.0] {
+        let q = (aspect - 1.0) / (aspect + 1.0);
+        for tolerance in [1e-3, 1e-6, 1e-8, 1e-12] {
+            let links = [link(Shape::Ellipse { a: 1.0, b: 1.0 / aspect }, 1.0, 0)];
+            let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+            let tolerance = Some(tolerance);
+            let scene = Scene { bodies: &bodies, quadrature: Quadrature::Plain, tolerance, ..Scene::new(1.0, 0.0) };
+            let model = ModelBuf::new(&scene).unwrap();
+            let nodes = model.view().nodes(Place::Link(0, 0)).unwrap();
+            let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance.unwrap();
+            let what = format!("{aspect} {tolerance:?}: {nodes} nodes, {:e} of the tolerance", error(nodes));
+            // Counts are rounded down, then up to multiples of 4, and at least six to a digit.
+            assert!(error(nodes + 1) < 1.0, "{what}");
+            let least = 6.0 * -tolerance.unwrap().log10();
+            assert!(error(nodes - 5) > 1.0 || (nodes as f64) < least + 4.0, "{what}");
+        }
+    }
+}
+
+#[test]
+fn the_tolerance_that_nobody_gave_is_told_in_both_precisions() {
+    fn told<R: nekton::scalar::Real>(tolerance: Option<f64>) -> (usize, f64) {
+        let links = [link(Shape::Star { radius: R::one(), amplitude: R::lit(0.2), lobes: 3 }, R::one(), 0)];
+        let bodies = [body(&links, [R::zero(); 3], [R::zero(); 3])];
+        let tolerance = tolerance.map(R::lit);
+        let model = ModelBuf::new(&Scene { bodies: &bodies, tolerance, ..Scene::new(R::one(), R::zero()) }).unwrap();
+        let model = model.view();
+        (model.nodes(Place::Link(0, 0)).unwrap(), model.plan().tolerance)
+    }
+    assert_eq!(told::<f64>(None), told::<f64>(Some(1e-8)));
+    // Ten thousand roundings.
+    assert_eq!(told::<f32>(None), told::<f32>(Some(1e4 * f64::from(f32::EPSILON))));
+    assert_near(told::<f32>(None).1, 1e4 * f64::from(f32::EPSILON), 1e-9);
+}

@@ -165,3 +165,23 @@ fn a_lone_body_and_a_lone_swimmer_at_rest_of_its_joints_have_no_force_to_compute
     assert_eq!(swimmer.formulation, Formulation::LockedMomentum);
     assert_eq!((swimmer.right_hand_sides, swimmer.state_len), (3, 3));
 }
+
+#[test]
+fn what_boundaries_do_to_themselves_is_kept_once_and_in_vacuum_not_at_all() {
+    // What a boundary does to itself is a number for every pair of nodes: it is kept where a boundary system is solved. For a lone body
+    // that is done once, in memory of the same size.
+    let reals = |nodes: usize, scene: &Scene<'_, f64>, count: usize| {
+        let links = [link(Shape::Ellipse { a: 0.8, b: 0.4 }, 1.3, nodes)];
+        let bodies = pair(&links);
+        Model::requirement(&Scene { bodies: &bodies[..count], ..*scene }).unwrap().reals
+    };
+    let square = 4 * NODES * NODES;
+    for (fluid_density, shortcuts, count, kept) in
+        [(1.0, true, 2, 1), (1.0, false, 1, 1), (1.0, true, 1, 1), (0.0, true, 2, 0), (0.0, true, 1, 0)]
+    {
+        let scene = Scene { shortcuts, ..Scene::new(fluid_density, 0.0) };
+        let [one, two, three] = [1, 2, 3].map(|k| reals(2 * k * NODES, &scene, count));
+        // The second difference of k² is 2.
+        assert_eq!(three + one - 2 * two, 2 * kept * square, "{fluid_density} {shortcuts} {count}");
+    }
+}

@@ -61,3 +61,46 @@ fn nodes_chosen_for_polygons_meet_the_tolerance() {
         }
     }
 }
+
+#[test]
+fn a_curve_drawn_far_from_the_origin_is_the_same_curve() {
+    // Seven digits are lost to the distance.
+    let ring = |far: f64| -> Vec<[f64; 2]> {
+        let point = |k: usize| (std::f64::consts::TAU * k as f64 / 24.0).sin_cos();
+        (0..24).map(|k| [far + point(k).1, 0.1 * point(k).0 - far]).collect()
+    };
+    let mass = |far: f64| {
+        let points = ring(far);
+        let links = [link(Shape::Curve { points: &points }, 1.0, 96)];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        matrix(&mut at_start(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).view(), |sim, out| {
+            sim.mass_matrix(out)
+        })
+    };
+    let (near, far) = (mass(0.0).concat(), mass(1e7).concat());
+    println!("{:e}", difference(&near, &far));
+    assert_close(&far, &near, 1e-6);
+}
+
+#[test]
+fn points_coincide_or_not_in_every_unit_of_length_alike() {
+    let ring = |unit: f64, gap: f64| -> Vec<[f64; 2]> {
+        let point = |k: usize| (std::f64::consts::TAU * k as f64 / 12.0).sin_cos();
+        let mut points: Vec<_> = (0..12).map(|k| [unit * point(k).1, 0.6 * unit * point(k).0]).collect();
+        if gap > 0.0 {
+            points.insert(4, [points[3][0] - gap * unit, points[3][1]]);
+        }
+        points
+    };
+    let model = |points: &[[f64; 2]]| {
+        let links = [link(Shape::Curve { points }, 1.0, 32)];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) })
+    };
+    let area = |unit: f64| model(&ring(unit, 0.0)).unwrap().view().link(0).unwrap().mass / (unit * unit);
+    for unit in [1e-12, 1e-6, 1e6, 1e12] {
+        assert_near(area(unit), area(1.0), 1e-13);
+        let error = model(&ring(unit, 1e-15)).unwrap_err();
+        assert_eq!((error.status, error.value), (nekton::Status::BadShape, 4.0), "{unit:e}: {error}");
+    }
+}

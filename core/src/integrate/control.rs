@@ -75,3 +75,29 @@ pub(super) fn step_factor<R: Real>(order: usize, error: R) -> R {
         (R::HALF / error).powf(R::one() / R::count(order + 1)).min(R::lit(0.9)).max(R::HALF)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_change_as_published() {
+        // Shampine & Gordon 1975, section 7.4: from order 1 upwards if that halves the error; from a higher one downwards if that is
+        // no worse than both others, upwards if that is better than both others.
+        let next = |order: usize, this: f64, lower: f64, higher: Option<f64>| {
+            Estimate { order, step: this, this, lower, prefers_lower: false }.next_order(higher)
+        };
+        assert_eq!(next(1, 1.0, f64::NAN, Some(0.49)), (2, 0.49));
+        assert_eq!(next(1, 1.0, f64::NAN, Some(0.51)), (1, 1.0));
+        assert_eq!(next(1, 1.0, f64::NAN, None), (1, 1.0));
+        for order in [2, 5, MAX_ORDER] {
+            assert_eq!(next(order, 1.0, 0.6, Some(0.7)), (order - 1, 0.6));
+            assert_eq!(next(order, 1.0, 2.0, Some(3.0)), (order, 1.0));
+            assert_eq!(next(order, 1.0, 0.6, None), (order, 1.0));
+            let up = if order < MAX_ORDER { (order + 1, 0.9) } else { (order, 1.0) };
+            assert_eq!(next(order, 1.0, 2.0, Some(0.9)), up);
+        }
+        let down = Estimate { order: 3, step: 1.0, this: 1.0, lower: 0.4, prefers_lower: true };
+        assert_eq!(down.next_order(Some(0.1)), (2, 0.4));
+    }
+}

@@ -243,7 +243,35 @@ fn rows<R: Real>() -> [[R; 3]; 3] {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
+
+    /// y' = −k y.
+    struct Decay(f64);
+
+    impl System<f64> for Decay {
+        fn dim(&self) -> usize {
+            1
+        }
+        fn rhs(&mut self, _: f64, y: &[f64], dydt: &mut [f64]) -> Result<()> {
+            dydt[0] = -self.0 * y[0];
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn stages_are_found_or_not_whatever_the_unit_of_the_unknowns() {
+        // The sweeps contract by h k or so, whatever the size of y.
+        for unit in [1e-200, 1e-30, 1e-9, 1.0, 1e9, 1e200] {
+            for (k, settles) in [(1.0, true), (40.0, false)] {
+                let (mut y, mut memory) = ([unit], std::vec![0.0; Gauss6::<f64>::memory_len(1).unwrap()]);
+                let told = Gauss6::new().step(&mut Decay(k), 0.0, 0.1, &mut y, &mut memory);
+                assert_eq!(told.err().map(|e| e.status), (!settles).then_some(Status::NoConvergence), "{unit:e}, {k}");
+                let exact = if settles { (-0.1 * k).exp() } else { 1.0 };
+                assert!((y[0] / unit - exact).abs() < 1e-12, "{unit:e}: {}", y[0] / unit);
+            }
+        }
+    }
 
     fn sums_are_exact<R: Real>() {
         let ([b1, b2], a) = (weights::<R>(), rows::<R>());

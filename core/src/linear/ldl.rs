@@ -74,7 +74,8 @@ mod tests {
     #[test]
     fn solutions_satisfy_their_equations() {
         let (a, b) = system([1.0, 3.0, 0.2, 7.0, 1.0, 0.5, 2.0]);
-        let (mut lower, mut x, mut inverse) = (a.clone(), b, [0.0; 7]);
+        // What the memory held before does not matter.
+        let (mut lower, mut x, mut inverse) = (a.clone(), b, [f64::NAN; 7]);
         factor(&mut lower, 7, &mut inverse).unwrap();
         solve(&lower, 7, &inverse, &mut x);
         for i in 0..7 {

@@ -26,7 +26,8 @@ pub fn compiled(folders: &Folders, order: &Order, count: usize) -> Result<Vec<us
         .filter_map(|word| word.parse().ok())
         .collect();
     for _ in 0..40 {
-        let chosen: Vec<usize> = (0..order.mutants.len()).filter(|id| !refused.contains(id)).take(count).collect();
+        let out = |id: &usize| refused.contains(id) || order.idle.contains(id);
+        let chosen: Vec<usize> = (0..order.mutants.len()).filter(|id| !out(id)).take(count).collect();
         let written = write(folders, order, &chosen)?;
         let output = cargo(folders, &["check", "--package", "nekton", "--message-format=short"])
             .output()

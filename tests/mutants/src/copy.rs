@@ -180,6 +180,7 @@ fn put(path: &Path, text: &str) -> Result<(), String> {
 mod test {
     use super::*;
     use crate::find::mutants;
+    use std::collections::BTreeSet;
 
     #[test]
     fn nested_switches_choose_between_the_piece_and_its_change() {
@@ -190,7 +191,7 @@ mod test {
             changes,
             ["g(x); → (nothing)", "begins with return 0.0;", "-x * 2.0 → -x / 2.0", "-x → x", "2.0 → 1.0"]
         );
-        let order = Order { mutants, files: Vec::new(), hash: 0 };
+        let order = Order { mutants, idle: BTreeSet::new(), files: Vec::new(), hash: 0 };
         let written = switched("core/src/a.rs", text, &order, &[0, 1, 2, 3, 4]);
         let body: Vec<&str> = written.text.lines().skip(1).take(2).map(str::trim).collect();
         assert_eq!(body[0], "if !crate::mutant::on(0) {  if crate::mutant::on(1) { return 0.0; } g(x); }");

@@ -69,6 +69,26 @@ pub fn mutants(file: &str, text: &str) -> Result<(Vec<Mutant>, Vec<String>), Str
     Ok((finder.found, finder.idle))
 }
 
+/// The text of a file without the modules and functions that are not compiled, or are tests.
+pub fn without_tests(text: &str) -> Result<String, String> {
+    let tree = syn::parse_file(text).map_err(|error| error.to_string())?;
+    let (mut out, mut at) = (String::new(), 0);
+    for item in &tree.items {
+        let attributes = match item {
+            syn::Item::Fn(x) => &x.attrs,
+            syn::Item::Mod(x) => &x.attrs,
+            _ => continue,
+        };
+        if !compiled(attributes) {
+            let range = item.span().byte_range();
+            out.push_str(text.get(at..range.start).unwrap_or_default().trim_end());
+            at = range.end;
+        }
+    }
+    out.push_str(text.get(at..).unwrap_or_default().trim_end());
+    Ok(out)
+}
+
 struct Finder<'a> {
     file: &'a str,
     text: &'a str,
@@ -334,4 +354,17 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     fn visit_angle_bracketed_generic_arguments(&mut self, _: &'ast syn::AngleBracketedGenericArguments) {}
     fn visit_generics(&mut self, _: &'ast syn::Generics) {}
     fn visit_attribute(&mut self, _: &'ast syn::Attribute) {}
+}
+
+#[cfg(test)]
+mod test {
+    use super::without_tests;
+
+    #[test]
+    fn text_without_tests_does_not_change_with_them() {
+        let code = "fn f() -> usize {\n    1\n}\n";
+        let tested = format!("{code}\n/// Claims.\n#[cfg(test)]\nmod tests {{\n    #[test]\n    fn one() {{}}\n}}\n");
+        assert_eq!(without_tests(code).unwrap(), code.trim_end());
+        assert_eq!(without_tests(&tested).unwrap(), code.trim_end());
+    }
 }

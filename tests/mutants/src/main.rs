@@ -20,7 +20,7 @@ const USAGE: &str = "usage: cargo xtask mutants [--first N] [--minutes M] [--aga
 
   --first N    only the first N changes of the sample, as a trial; docs/mutants.csv is not written
   --minutes M  begin no change after M minutes (the next call goes on)
-  --again      try again what survived, by all tests (else by those that are new)
+  --again      try again what survived, by all tests (else by those that are new, and without what is listed as equivalent)
   --list       print the sample and try nothing
 ";
 
@@ -102,8 +102,8 @@ fn run(folders: &Folders, options: &Options) -> Result<bool, String> {
     if options.again {
         results.forget_survivors();
     }
-    trial::run(&order, &chosen, &tests, &mut results, end)?;
     let equivalent = table::equivalents(&folders.root.join("tests/mutants/equivalent.csv"))?;
+    trial::run(&order, &chosen, &tests, &mut results, &table::listed(&order, &equivalent), end)?;
     let report = table::Report::new(&order, &chosen, &results, &equivalent);
     report.print();
     println!("{:.0} minutes", start.elapsed().as_secs_f64() / 60.0);

@@ -1,18 +1,21 @@
 //! The changes of all files, in an order that depends on a seed and on the files alone.
 
-use crate::find::{Mutant, mutants};
+use crate::find::{Mutant, mutants, without_tests};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// All changes, shuffled; their places are their numbers.
 pub struct Order {
     pub mutants: Vec<Mutant>,
+    /// Those in files that only tests are made of: drawn with the others, but not tried.
+    pub idle: BTreeSet<usize>,
     /// Files of core with their text.
     pub files: Vec<(String, String)>,
-    /// Of all of that text.
+    /// Of all of that text but the tests: another test leaves what is known as it is.
     pub hash: u64,
 }
 
-/// Files whose modules are compiled for benchmarks or tests only are left out.
+/// Modules that are compiled for benchmarks or tests only are left out, with the modules below them.
 pub fn order(root: &Path, seed: u64) -> Result<Order, String> {
     let source = root.join("core/src");
     let mut paths = Vec::new();
@@ -25,21 +28,31 @@ pub fn order(root: &Path, seed: u64) -> Result<Order, String> {
         let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
         let (found, modules) = mutants(&name, &text)?;
         all.extend(found);
-        // Where the module `name` of this file is looked for.
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let mut folder = path.parent().unwrap_or(root).to_path_buf();
-        if !["lib", "mod"].contains(&stem.as_str()) {
-            folder.push(stem);
-        }
-        idle.extend(modules.iter().flat_map(|m| [folder.join(format!("{m}.rs")), folder.join(m).join("mod.rs")]));
+        idle.extend(modules.iter().map(|module| folder_of(&name, module)));
         files.push((name, text));
     }
-    let idle: Vec<String> =
-        idle.iter().map(|p| p.strip_prefix(root).unwrap_or(p).to_string_lossy().replace('\\', "/")).collect();
-    all.retain(|m| !idle.contains(&m.file));
+    all.retain(|m| !idle.iter().any(|module| is_file_of(&m.file, module)));
     shuffle(&mut all, seed);
-    let hash = files.iter().fold(seed, |hash, (name, text)| fold(fold(hash, name.as_bytes()), text.as_bytes()));
-    Ok(Order { mutants: all, files, hash })
+    let below = |file: &str| idle.iter().any(|module| is_file_of(file, module) || file.starts_with(module));
+    let idle = (0..all.len()).filter(|&id| below(&all[id].file)).collect();
+    let mut hash = seed;
+    for (name, text) in files.iter().filter(|(name, _)| !below(name)) {
+        hash = fold(fold(hash, name.as_bytes()), without_tests(text)?.as_bytes());
+    }
+    Ok(Order { mutants: all, idle, files, hash })
+}
+
+/// Where the modules below `module` of a file are looked for, with the last slash.
+fn folder_of(file: &str, module: &str) -> String {
+    let stem = file.strip_suffix(".rs").unwrap_or(file);
+    let folder = stem.strip_suffix("/mod").or_else(|| stem.strip_suffix("/lib")).unwrap_or(stem);
+    format!("{folder}/{module}/")
+}
+
+/// Whether a file is the module whose folder is given.
+fn is_file_of(file: &str, module: &str) -> bool {
+    let folder = module.trim_end_matches('/');
+    file.strip_prefix(folder).is_some_and(|rest| rest == ".rs" || rest == "/mod.rs")
 }
 
 /// Every Rust file below a folder.
@@ -78,5 +91,23 @@ fn shuffle<T>(items: &mut [T], seed: u64) {
         x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         x ^= x >> 31;
         items.swap(k, (x % (k as u64 + 1)) as usize);
+    }
+}
+
+#[cfg(test)]
+mod test {
+    use super::{folder_of, is_file_of};
+
+    #[test]
+    fn modules_are_files_or_folders_beside_the_one_that_declares_them() {
+        let tests = folder_of("core/src/integrate/mod.rs", "tests");
+        assert_eq!(tests, "core/src/integrate/tests/");
+        assert_eq!(folder_of("core/src/lib.rs", "base"), "core/src/base/");
+        let of_a_file = folder_of("core/src/base/once.rs", "tests");
+        assert!(
+            is_file_of("core/src/integrate/tests/mod.rs", &tests)
+                && is_file_of("core/src/base/once/tests.rs", &of_a_file)
+        );
+        assert!(!is_file_of("core/src/integrate/tests/accuracy.rs", &tests));
     }
 }

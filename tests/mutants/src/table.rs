@@ -108,6 +108,11 @@ fn key(m: &Mutant) -> Key {
     [m.file.clone(), m.function.clone(), m.code.clone(), m.column.to_string(), m.change()]
 }
 
+/// Changes that stand in the hand-written list.
+pub fn listed(order: &Order, equivalent: &BTreeMap<Key, String>) -> BTreeSet<usize> {
+    (0..order.mutants.len()).filter(|&id| equivalent.contains_key(&key(&order.mutants[id]))).collect()
+}
+
 /// The hand-written list of changes that change nothing, with reasons.
 pub fn equivalents(path: &Path) -> Result<BTreeMap<Key, String>, String> {
     let text = read(path)?;

@@ -238,11 +238,13 @@ pub fn run(
     chosen: &[usize],
     tests: &Tests,
     results: &mut Results,
+    equivalent: &BTreeSet<usize>,
     end: Option<Instant>,
 ) -> Result<(), String> {
-    // Of what survived, those that a test passes which was built since.
+    // Of what survived, those that a test passes which was built since, but for those that are known to change nothing.
     let due = |id: &usize| match results.known.get(id) {
         None => true,
+        Some(Outcome::Survived(..)) if equivalent.contains(id) => false,
         Some(Outcome::Survived(_, tried)) => tests.all.iter().any(|t| t.built >= *tried && t.passes.contains(id)),
         Some(_) => false,
     };

@@ -62,3 +62,23 @@ fn fill_potential<R: Real>(b: &BoundaryRecord<R>, store: &[R], nodes: &mut [R]) 
         put(nodes, 7 * n + k, chi);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ladders_are_whole_where_rounding_would_not_hide_the_error_and_gone_where_it_does() {
+        let record = BoundaryRecord::<f64> { nodes: 64, ..Default::default() };
+        // Of the nodes' own error e^(−N β), with β in the plain parameter.
+        let of = |error: f64, plain: f64| need(&record, plain, -error.ln() / (64.0 * plain));
+        for plain in [1.0, 0.4] {
+            for (power, exact) in
+                [(0.1, 1.0), (0.9, 1.0), (1.0, 1.0), (1.125, 0.5), (1.25, 0.0), (2.0, 0.0), (9.0, 0.0)]
+            {
+                let found = of(f64::EPSILON.powf(power), plain);
+                assert!((found - exact).abs() < 1e-14, "{power}: {found}");
+            }
+        }
+    }
+}

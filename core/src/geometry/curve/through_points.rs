@@ -297,6 +297,33 @@ mod tests {
     }
 
     #[test]
+    fn elimination_exchanges_rows_where_it_must() {
+        // Rows that are those of a dominant matrix, turned round: without exchanges pivots are small or 0.
+        for n in [2, 3, 8] {
+            let entry = |i: usize, j: usize| {
+                let smooth = ((3 * i + 5 * j) as f64).sin();
+                if i + j + 1 == n {
+                    10.0
+                } else if i == j {
+                    0.0
+                } else {
+                    smooth
+                }
+            };
+            let x = |j: usize| [1.0 + j as f64, -2.0 * j as f64];
+            let side = |i: usize, s: usize| (0..n).map(|j| entry(i, j) * x(j)[s]).sum();
+            let row = |i: usize| (0..n).map(|j| entry(i, j)).chain([side(i, 0), side(i, 1)]).collect::<Vec<f64>>();
+            let (mut rows, mut solution) = ((0..n).flat_map(row).collect::<Vec<_>>(), vec![f64::NAN; 2 * n]);
+            solve(&mut rows, n, &mut solution).unwrap();
+            for j in 0..n {
+                assert!((0..2).all(|s| (solution[2 * j + s] - x(j)[s]).abs() < 1e-13 * n as f64), "{n}: {solution:?}");
+            }
+        }
+        let zeros = solve(&mut [0.0_f64; 8], 2, &mut [0.0; 4]).unwrap_err();
+        assert_eq!(zeros.status, Status::Singular);
+    }
+
+    #[test]
     fn transform_is_the_definition() {
         let (m, top) = (48, 9);
         let samples: Vec<f64> = (0..2 * m).map(|i| ((i * i) as f64 * 0.37).sin()).collect();

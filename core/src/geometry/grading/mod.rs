@@ -344,6 +344,19 @@ mod tests {
     }
 
     #[test]
+    fn nodes_stay_distinct_numbers_however_fine_a_scale_is_asked_for() {
+        for t in [0.0, 1.0, 6.2] {
+            for beta in [1e-12, 1e-15, 1e-300, 0.0] {
+                let (data, rungs) = store(&[ladder(t, beta)]);
+                let grading = Grading::read(&data, rungs);
+                assert!(rungs <= 30, "{beta:e}: {rungs} rungs");
+                let nodes: Vec<f64> = (0..64).map(|k| grading.node(k, 64).unwrap()).collect();
+                assert!(nodes.windows(2).all(|pair| pair[0] < pair[1]), "{t} {beta:e}: {nodes:?}");
+            }
+        }
+    }
+
+    #[test]
     fn ladders_that_coincide_share_their_weight() {
         let (one, rungs) = store(&[ladder(2.0, 0.01)]);
         let (two, _) = store(&[ladder(2.0, 0.01), ladder(2.0, 0.01)]);

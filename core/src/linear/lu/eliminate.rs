@@ -300,3 +300,54 @@ fn reduce_column<R: Real, V: Lanes<R>, const C: usize>(done: &[R], ld: usize, k:
     }
     size
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::base::machine::{Machine, Task, Vectors};
+    use core::marker::PhantomData;
+    use std::vec::Vec;
+
+    struct Straight<'a, V, const H: usize>(&'a mut [f64], &'a mut [u64], PhantomData<V>);
+
+    impl<V: Lanes<f64>, const H: usize> Task for Straight<'_, V, H> {
+        type Output = bool;
+        #[inline(always)]
+        fn run(self) -> bool {
+            let n = self.0.len() / BLOCK;
+            eliminate_straight::<f64, V, H>(self.0, n, n, 0, self.1).is_some()
+        }
+    }
+
+    /// Whether the block is eliminated in one pass, by every set of instructions that the machine at hand has.
+    fn straight(block: &[f64]) -> Vec<bool> {
+        let one = |machine| {
+            let (block, pivots) = (&mut block.to_vec()[..], &mut [0; BLOCK][..]);
+            match machine {
+                Machine::Portable(_) => None,
+                Machine::Avx2(m) => Some(m.fused(Straight::<<f64 as Vectors>::Short, 2>(block, pivots, PhantomData))),
+                Machine::Avx512(m) => Some(m.fused(Straight::<<f64 as Vectors>::Long, 1>(block, pivots, PhantomData))),
+            }
+        };
+        Machine::all().into_iter().filter_map(one).collect()
+    }
+
+    #[test]
+    fn a_block_takes_one_pass_if_and_only_if_its_pivots_need_no_exchange() {
+        let n = 21;
+        let sound =
+            |row: usize, column: usize| if row == column { 3.0 } else { ((row + 2 * column) as f64).sin() / 9.0 };
+        let with = |at: Option<(usize, usize)>, value: f64| -> Vec<f64> {
+            (0..BLOCK * n).map(|e| if at == Some((e % n, e / n)) { value } else { sound(e % n, e / n) }).collect()
+        };
+        assert!(straight(&with(None, 0.0)).into_iter().all(|one_pass| one_pass));
+        for at in [(0, 0), (5, 5), (7, 7), (13, 2)] {
+            for value in [f64::NAN, f64::INFINITY, if at.0 == at.1 { 1e-3 } else { 30.0 }] {
+                // NaN below comes to a later pivot.
+                let any = straight(&with(Some(at), value)).into_iter().any(|one_pass| one_pass);
+                assert!(!any || (at.0 != at.1 && value.is_nan()), "{value} at {at:?}");
+            }
+        }
+    }
+}

@@ -309,8 +309,10 @@ mod tests {
         let n = 2 + width + below;
         let ld = n + 1;
         let entry = |i: usize, j: usize| ((7 * i + 5 * j + i * j) % 5) as f64 - 2.0;
+        // Pivots that differ, and are divided by exactly.
+        let pivot = |k: usize| [2.0, 0.5, 4.0, 1.0, 8.0][k % 5];
         let left: Vec<f64> =
-            (0..width * ld).map(|e| if e % ld == 2 + e / ld { 2.0 } else { entry(e % ld, e / ld) }).collect();
+            (0..width * ld).map(|e| if e % ld == 2 + e / ld { pivot(e / ld) } else { entry(e % ld, e / ld) }).collect();
         let x: Vec<f64> = (0..N * ld).map(|e| entry(e % ld, 3 + e / ld)).collect();
         let product = |row: usize, j: usize, columns: std::ops::Range<usize>| -> f64 {
             columns.map(|p| left[p * ld + row] * x[j * ld + 2 + p]).sum()

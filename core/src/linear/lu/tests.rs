@@ -118,6 +118,41 @@ fn a_block_that_turns_out_to_need_an_exchange_gets_it() {
 }
 
 #[test]
+fn a_matrix_with_an_entry_that_is_not_finite_is_refused() {
+    let n = 21;
+    for (entry, value) in (0..n * n).flat_map(|e| [(e, f64::NAN), (e, f64::INFINITY)]) {
+        let mut a = dominant(n, n);
+        a[entry] = value;
+        for level in Machine::all() {
+            let (mut lu, mut pivots) = (a.clone(), std::vec![0; n]);
+            let told = with_kernel!(level, kernel =>
+                factor_by(kernel, Factorization::Own, &mut lu, n, n, 0, &mut pivots, |_| usize::MAX));
+            assert_eq!(told.unwrap_err().status, Status::Singular, "{value} at {} {}", entry % n, entry / n);
+        }
+    }
+}
+
+#[test]
+fn every_pivot_is_the_largest_of_its_column() {
+    for n in [2, 5, 8, 9, 31, 64] {
+        for seed in 0..6 {
+            let a = random(n * n, seed);
+            let (mut lu, mut pivots) = (a.clone(), std::vec![0; n]);
+            factor_with(Factorization::Own, &mut lu, n, n, &mut pivots).unwrap();
+            let (mut lu2, mut pivots2) = (a, std::vec![0; n]);
+            factor(&mut lu2, n, n, &mut pivots2).unwrap();
+            assert_eq!((&lu, &pivots), (&lu2, &pivots2));
+            let largest = (0..n).flat_map(|j| &lu[j * n + j + 1..(j + 1) * n]).fold(0.0, |m: f64, l| m.max(l.abs()));
+            assert!(largest <= 1.0, "n = {n}: a multiplier is {largest}");
+        }
+    }
+    // Without a first pivot nothing can be done but to exchange.
+    let (mut lu, mut pivots) = ([0.0_f64, 2.0, 3.0, 1.0], [0; 2]);
+    assert_eq!(factor(&mut lu, 2, 2, &mut pivots).unwrap(), 2.0 / 3.0);
+    assert_eq!((lu, pivots[0]), ([2.0, 0.0, 1.0, 3.0], 1));
+}
+
+#[test]
 fn a_factorization_continued_from_its_first_block_solves_the_system() {
     for level in Machine::all() {
         for (n, done) in [(64, 0), (64, 24), (61, 13), (40, 39), (90, 51), (7, 3)] {
