@@ -387,7 +387,11 @@ pub unsafe extern "C" fn nekton_sim_set_step_limit(sim: *mut SimHandle<f64>, ste
 
 /// Sets a channel (NEKTON_SIGNAL_CHANNEL; counted body by body, first the root, then the joints): t, u, du/dt,
 /// d2u/dt2 (4 numbers) at both ends of the coming interval, quintic in between, constant outside. For a torque
-/// these are the torque and its rates. The integrator starts anew.
+/// these are the torque and its rates. What continues the piece before (u, du/dt, d2u/dt2 of a motion, the value of a torque), and
+/// the same piece again, does not disturb the integrator; where d2u/dt2 or a torque jumps, fixed-step methods forget past
+/// rates and ADAMS evaluates once more. A motion whose u or du/dt jumps once it has begun is noticed (DRIVE_UNRESOLVED): it would
+/// take an impulse, which is not made. For control loops: RK4 or ABM4 with a step that divides the sample and is a sixteenth of
+/// the fastest period or less; ADAMS where time per sample need not be bounded.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, NOT_FINITE, BAD_TABLE (times do not increase), UNSUPPORTED (no
 /// such channel). One thread per simulation.
 #[unsafe(no_mangle)]
@@ -590,6 +594,19 @@ pub unsafe extern "C" fn nekton_sim_energy(
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
     unsafe { report(diag, questions::energy(sim, energy)) }
+}
+
+/// Balance of energy, 3 numbers: total - work now minus what it was when an energy was first asked for (ask at the start, too); the
+/// largest kinetic energy met; the drift from where on ENERGY_DRIFT is noticed. It sees the error of the whole motion, also what
+/// no estimate of single steps can see. Cost and errors: as nekton_sim_energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton_sim_energy_drift(
+    sim: *mut SimHandle<f64>,
+    drift: *mut f64,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, questions::energy_drift(sim, drift.cast())) }
 }
 
 /// Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.

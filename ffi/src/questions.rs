@@ -115,6 +115,17 @@ pub(crate) unsafe fn impulse<R: Real>(handle: *mut SimHandle<R>, out: *mut [R; 3
     }
 }
 
+pub(crate) unsafe fn energy_drift<R: Real>(handle: *mut SimHandle<R>, out: *mut [R; 3]) -> Outcome<Status> {
+    check_pointer("drift", out.cast_const())?;
+    // SAFETY: checked above and in `sim`.
+    unsafe {
+        let drift = sim(handle.cast_const())?.view()?.energy_drift()?;
+        let drift = [drift.amount, drift.kinetic, drift.allowed];
+        sound(drift)?;
+        give(out, drift)
+    }
+}
+
 pub(crate) unsafe fn resolution<R: Real>(
     handle: *mut SimHandle<R>,
     out: *mut ResolutionOut<R>,

@@ -51,6 +51,7 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
             sim_circulation_gradient(sim, p, n, d),
             sim_gyroscopic(sim, p, n * n, d),
             sim_energy(sim, energy.as_mut_ptr(), d),
+            sim_energy_drift(sim, p, d),
             sim_impulse(sim, p, d),
             sim_indicators(sim, resolution.as_mut_ptr(), d),
             sim_resolution(sim, resolution.as_mut_ptr(), d),

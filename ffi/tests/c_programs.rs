@@ -219,6 +219,8 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
     check("total", &[energy.total]);
     check("work", &[energy.work]);
     check("impulse", &sim.impulse().unwrap());
+    let drift = sim.energy_drift().unwrap();
+    check("energy_drift", &[drift.amount, drift.kinetic, drift.allowed]);
     check("resolution", &[sim.resolution().unwrap().mass]);
     check("indicators", &[sim.indicators().unwrap().bound()]);
     let e = sim.time_error();

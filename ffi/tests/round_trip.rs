@@ -223,6 +223,9 @@ macro_rules! round_trip {
                 let mut impulse = [0.0; 3];
                 assert_eq!(unsafe { sim_impulse(c, impulse.as_mut_ptr(), null) }, 0);
                 assert_eq!(impulse, rust.impulse().unwrap());
+                let (mut drift, balance) = ([0.0; 3], rust.energy_drift().unwrap());
+                assert_eq!(unsafe { sim_energy_drift(c, drift.as_mut_ptr(), null) }, 0);
+                assert_eq!(drift, [balance.amount, balance.kinetic, balance.allowed]);
                 let mut resolution = std::mem::MaybeUninit::uninit();
                 assert_eq!(unsafe { sim_resolution(c, resolution.as_mut_ptr(), null) }, 0);
                 let (r, resolution) = (rust.resolution().unwrap(), unsafe { resolution.assume_init() });

@@ -336,6 +336,9 @@ macro_rules! precision {
                         if check_report(sim_impulse(self.sim, impulse.as_mut_ptr(), &mut diag), &diag) {
                             assert!(impulse.iter().all(|x| x.is_finite()));
                         }
+                        if check_report(sim_energy_drift(self.sim, impulse.as_mut_ptr(), &mut diag), &diag) {
+                            assert!(impulse.iter().all(|x| x.is_finite()));
+                        }
                         for question in [sim_resolution, sim_indicators] {
                             if check_report(question(self.sim, &mut resolution, &mut diag), &diag) {
                                 assert!(resolution.mass.is_finite() && resolution.force.is_finite());
@@ -461,6 +464,7 @@ precision!(double, api64, f64, {
     sim_circulation_gradient = nekton_sim_circulation_gradient,
     sim_gyroscopic = nekton_sim_gyroscopic,
     sim_energy = nekton_sim_energy,
+    sim_energy_drift = nekton_sim_energy_drift,
     sim_impulse = nekton_sim_impulse,
     sim_indicators = nekton_sim_indicators,
     sim_resolution = nekton_sim_resolution,
@@ -506,6 +510,7 @@ precision!(single, api32, f32, {
     sim_circulation_gradient = nekton32_sim_circulation_gradient,
     sim_gyroscopic = nekton32_sim_gyroscopic,
     sim_energy = nekton32_sim_energy,
+    sim_energy_drift = nekton32_sim_energy_drift,
     sim_impulse = nekton32_sim_impulse,
     sim_indicators = nekton32_sim_indicators,
     sim_resolution = nekton32_sim_resolution,

@@ -72,6 +72,7 @@ template <class R> struct Api;
         static constexpr auto sim_circulation_gradient = &P##_sim_circulation_gradient;                                        \
         static constexpr auto sim_gyroscopic = &P##_sim_gyroscopic;                                                            \
         static constexpr auto sim_energy = &P##_sim_energy;                                                                    \
+        static constexpr auto sim_energy_drift = &P##_sim_energy_drift;                                                        \
         static constexpr auto sim_impulse = &P##_sim_impulse;                                                                  \
         static constexpr auto sim_indicators = &P##_sim_indicators;                                                            \
         static constexpr auto sim_resolution = &P##_sim_resolution;                                                            \

@@ -167,6 +167,11 @@ public:
     {
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_energy(sim_, &out, d); });
     }
+    /** Total energy minus work, now minus at first; the largest kinetic energy met; what is noticed. */
+    nekton_status energy_drift(std::array<R, 3> &out, nekton_diag *diag = nullptr)
+    {
+        return detail::call(diag, [&](nekton_diag *d) { return Api::sim_energy_drift(sim_, out.data(), d); });
+    }
     /** Linear impulse and angular impulse about the origin. */
     nekton_status impulse(std::array<R, 3> &out, nekton_diag *diag = nullptr)
     {

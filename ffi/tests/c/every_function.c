@@ -175,6 +175,8 @@ int main(void) {
     print("work", &energy.work, 1);
     MUST(nekton_sim_impulse(sim, a, &diag));
     print("impulse", a, 3);
+    MUST(nekton_sim_energy_drift(sim, a, &diag));
+    print("energy_drift", a, 3);
     MUST(nekton_sim_resolution(sim, &resolution, &diag));
     print("resolution", &resolution.mass, 1);
     MUST(nekton_sim_indicators(sim, &resolution, &diag));
