@@ -7,7 +7,7 @@ use crate::base::memory::{copy, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::indicators::Resolution;
-use crate::fluid::contact::{set_anchor, swept_contact};
+use crate::fluid::contact::{set_anchor, smallest_gap, swept_contact};
 use crate::geometry::pose::Poses;
 use crate::model::Formulation;
 use crate::model::signal::Jump;
@@ -242,7 +242,7 @@ impl<R: Real> Sim<'_, R> {
         };
         let outcome = adams.step(&mut system, t_stop, self.state.integrator);
         self.progress.adams = adams;
-        outcome?;
+        outcome.map_err(|e| self.contact_before(e))?;
         self.watch(adams.time());
         self.note_drives(adams.time() - adams.last_step(), adams.last_step(), moved);
         self.note_error(true, adams.time(), adams.last_step());
@@ -251,6 +251,23 @@ impl<R: Real> Sim<'_, R> {
         self.evaluation.place_only(&self.model, self.progress.adams.time(), p, &[]);
         set_anchor(self.state.anchor, self.evaluation.placement.poses, self.evaluation.placement.q);
         Ok(())
+    }
+
+    /// A step that can be no shorter although boundaries all but touch is a contact.
+    fn contact_before(&mut self, error: Error) -> Error {
+        if error.status != Status::StepTooSmall {
+            return error;
+        }
+        let (p, _) = split_state(&self.model, self.progress.adams.state(self.state.integrator));
+        self.evaluation.place_only(&self.model, self.progress.adams.time(), p, &[]);
+        let gap = smallest_gap(&self.model, Poses(self.evaluation.placement.poses));
+        let least = self.model.boundaries.iter().fold(R::MAX, |m, b| m.min(b.reach));
+        match gap.between {
+            Some((a, b)) if gap.distance < R::lit(1e-5) * least => {
+                Error::new(Status::Contact).at(a).with(b).of("gap", gap.distance.to_f64())
+            }
+            _ => error,
+        }
     }
 
     /// Shows the variable-step solution at `t`, within the last step.
