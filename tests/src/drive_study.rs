@@ -54,7 +54,7 @@ impl Random {
                 terms.push(Harmonic { amplitude: size / turns, frequency, phase: n.between(0.0, 6.0), offset: 0.0 });
                 let ramp = pulse * n.between(0.1, 0.5);
                 window = Some(Window { from: pause, to: end, ramp });
-                pieces.push([pause, end, 0.02 * ramp.min(pulse / turns)]);
+                pieces.push([pause, end, 0.004 * ramp.min(pulse / turns)]);
                 "window"
             }
             3 if torque => {

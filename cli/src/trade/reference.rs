@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use nekton::scene::{ForceFormula, Quadrature};
 use nekton::status::Error;
 
-use super::drives::strides;
 use super::drives::OUTPUTS;
+use super::drives::strides;
 use super::measure::{Bench, Ended, Path};
 use super::setting::Setting;
 use crate::scene_file::Integrator;
