@@ -32,7 +32,7 @@ pub struct Adams<R> {
     prepared: bool,
     /// Has it jumped since it was evaluated?
     jumped: bool,
-    /// Steps to come whose past reaches beyond a jump or a kink.
+    /// Steps to come whose past reaches beyond a jump or a kink, or to steps that were much longer.
     doubtful: usize,
     /// Length proposed for the next step; 0 if it is to be estimated.
     proposed: R,
@@ -373,6 +373,10 @@ impl<R: Real> Adams<R> {
             if seen.abs() < step.abs() {
                 // Unless rounding is all that is missing.
                 (step, last) = if seen.abs() < shortest { (shortest * sign, false) } else { (seen, false) };
+            }
+            // Beside steps that were much longer all orders are the trapezoidal rule, and do not differ: the estimate is blind.
+            if R::lit(8.0) * step.abs() < self.last_step.abs() {
+                self.kink();
             }
             let time = if last { stop } else { self.time + (self.time_rest + step) };
             let formula = Formula::new(self.order, step, &self.spans);
