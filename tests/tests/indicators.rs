@@ -424,3 +424,25 @@ fn the_tolerance_that_nobody_gave_is_told_in_both_precisions() {
     assert_eq!(told::<f32>(None), told::<f32>(Some(1e4 * f64::from(f32::EPSILON))));
     assert_near(told::<f32>(None).1, 1e4 * f64::from(f32::EPSILON), 1e-9);
 }
+
+#[test]
+fn circulation_between_walls_tells_no_error_where_nodes_resolve_it() {
+    let links = [nekton::scene::Link { circulation: 0.7, ..link(Shape::Ellipse { a: 0.5, b: 0.3 }, 1.0, 96) }];
+    let bodies = [body(&links, [0.4, -0.3, 0.2], [0.1, 0.2, 0.3])];
+    let tank = Some(wall(disc(2.0), [0.1, 0.0], 0.0, 96));
+    let obstacles = [nekton::scene::Wall { circulation: -0.4, ..wall(disc(0.4), [-0.9, 0.2], 0.0, 96) }];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        let scene = Scene { bodies: &bodies, quadrature, ..Scene::new(1.0, 0.0) };
+        for scene in [
+            Scene { tank, ..scene },
+            Scene { obstacles: &obstacles, ..scene },
+            Scene { tank, obstacles: &obstacles, ..scene },
+        ] {
+            let mut sim = at_start(&scene);
+            let mut sim = sim.view();
+            for told in [sim.indicators().unwrap(), sim.resolution().unwrap()] {
+                assert!(told.bound() < 1e-7, "{quadrature:?}: {told:?}");
+            }
+        }
+    }
+}
