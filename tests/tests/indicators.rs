@@ -392,18 +392,18 @@ fn an_ellipse_alone_gets_the_nodes_that_its_error_in_closed_form_asks_for() {
     // By the plain rule the density of an ellipse alone is wrong by 4 qᴺ, q = (a − b)/(a + b).
     for aspect in [5.0_f64, 8.0, 20.0, 40.0] {
         let q = (aspect - 1.0) / (aspect + 1.0);
-        for tolerance in [1e-3, 1e-6, 1e-8, 1e-12] {
+        for tolerance in [1e-3_f64, 1e-6, 1e-8, 1e-12] {
             let links = [link(Shape::Ellipse { a: 1.0, b: 1.0 / aspect }, 1.0, 0)];
             let bodies = [body(&links, [0.0; 3], [0.0; 3])];
-            let tolerance = Some(tolerance);
-            let scene = Scene { bodies: &bodies, quadrature: Quadrature::Plain, tolerance, ..Scene::new(1.0, 0.0) };
+            let plain = Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) };
+            let scene = Scene { tolerance: Some(tolerance), ..plain };
             let model = ModelBuf::new(&scene).unwrap();
             let nodes = model.view().nodes(Place::Link(0, 0)).unwrap();
-            let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance.unwrap();
-            let what = format!("{aspect} {tolerance:?}: {nodes} nodes, {:e} of the tolerance", error(nodes));
+            let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance;
+            let what = format!("{aspect} {tolerance:e}: {nodes} nodes, {:e} of the tolerance", error(nodes));
             // Counts are rounded down, then up to multiples of 4, and at least six to a digit.
             assert!(error(nodes + 1) < 1.0, "{what}");
-            let least = 6.0 * -tolerance.unwrap().log10();
+            let least = 6.0 * -tolerance.log10();
             assert!(error(nodes - 5) > 1.0 || (nodes as f64) < least + 4.0, "{what}");
         }
     }
