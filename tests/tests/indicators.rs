@@ -392,18 +392,18 @@ fn an_ellipse_alone_gets_the_nodes_that_its_error_in_closed_form_asks_for() {
     // By the plain rule the density of an ellipse alone is wrong by 4 qᴺ, q = (a − b)/(a + b).
     for aspect in [5.0_f64, 8.0, 20.0, 40.0] {
         let q = (aspect - 1.0) / (aspect + 1.0);
-        for tolerance in [1e-3, 1e-6, 1e-8, 1e-12] {
+        for tolerance in [1e-3_f64, 1e-6, 1e-8, 1e-12] {
             let links = [link(Shape::Ellipse { a: 1.0, b: 1.0 / aspect }, 1.0, 0)];
             let bodies = [body(&links, [0.0; 3], [0.0; 3])];
-            let tolerance = Some(tolerance);
-            let scene = Scene { bodies: &bodies, quadrature: Quadrature::Plain, tolerance, ..Scene::new(1.0, 0.0) };
+            let plain = Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) };
+            let scene = Scene { tolerance: Some(tolerance), ..plain };
             let model = ModelBuf::new(&scene).unwrap();
             let nodes = model.view().nodes(Place::Link(0, 0)).unwrap();
-            let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance.unwrap();
-            let what = format!("{aspect} {tolerance:?}: {nodes} nodes, {:e} of the tolerance", error(nodes));
+            let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance;
+            let what = format!("{aspect} {tolerance:e}: {nodes} nodes, {:e} of the tolerance", error(nodes));
             // Counts are rounded down, then up to multiples of 4, and at least six to a digit.
             assert!(error(nodes + 1) < 1.0, "{what}");
-            let least = 6.0 * -tolerance.unwrap().log10();
+            let least = 6.0 * -tolerance.log10();
             assert!(error(nodes - 5) > 1.0 || (nodes as f64) < least + 4.0, "{what}");
         }
     }
@@ -423,4 +423,26 @@ fn the_tolerance_that_nobody_gave_is_told_in_both_precisions() {
     // Ten thousand roundings.
     assert_eq!(told::<f32>(None), told::<f32>(Some(1e4 * f64::from(f32::EPSILON))));
     assert_near(told::<f32>(None).1, 1e4 * f64::from(f32::EPSILON), 1e-9);
+}
+
+#[test]
+fn circulation_between_walls_tells_no_error_where_nodes_resolve_it() {
+    let links = [nekton::scene::Link { circulation: 0.7, ..link(Shape::Ellipse { a: 0.5, b: 0.3 }, 1.0, 96) }];
+    let bodies = [body(&links, [0.4, -0.3, 0.2], [0.1, 0.2, 0.3])];
+    let tank = Some(wall(disc(2.0), [0.1, 0.0], 0.0, 96));
+    let obstacles = [nekton::scene::Wall { circulation: -0.4, ..wall(disc(0.4), [-0.9, 0.2], 0.0, 96) }];
+    for quadrature in [Quadrature::Plain, Quadrature::Graded] {
+        let scene = Scene { bodies: &bodies, quadrature, ..Scene::new(1.0, 0.0) };
+        for scene in [
+            Scene { tank, ..scene },
+            Scene { obstacles: &obstacles, ..scene },
+            Scene { tank, obstacles: &obstacles, ..scene },
+        ] {
+            let mut sim = at_start(&scene);
+            let mut sim = sim.view();
+            for told in [sim.indicators().unwrap(), sim.resolution().unwrap()] {
+                assert!(told.bound() < 1e-7, "{quadrature:?}: {told:?}");
+            }
+        }
+    }
 }
