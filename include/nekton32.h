@@ -485,6 +485,38 @@ nekton_status nekton32_sim_copy(struct nekton32_sim *to,
                                 struct nekton_diag *diag);
 
 /**
+ * Bytes that nekton32_sim_save writes; they depend on the model alone.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY. One thread per simulation.
+ */
+nekton_status nekton32_sim_save_req(const struct nekton32_sim *sim, size_t *bytes);
+
+/**
+ * Writes all that a simulation remembers to out, which has room for len bytes: time, state, method, integrator and its past,
+ * channels, counters, estimates, limit of steps. nekton32_sim_load of any simulation of an equal model, in any process and on any
+ * machine, goes on from there bit for bit (with the same build of this library). The bytes have no alignment and no pointers;
+ * written tells how many there are.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY, ALIASING, MEMORY_TOO_SMALL (out is then not written), BAD_SAVE (a number
+ * of the simulation is not finite). One thread per simulation.
+ */
+nekton_status nekton32_sim_save(const struct nekton32_sim *sim,
+                                void *out,
+                                size_t len,
+                                size_t *written,
+                                struct nekton_diag *diag);
+
+/**
+ * Makes a simulation what was saved by nekton32_sim_save, by itself or by another one of an equal model (every value of its scene is
+ * the same); the method becomes the saved one, too. from are exactly the len bytes that were written.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY, ALIASING, BAD_SAVE: diag->what names what is wrong, "mark" (these are other
+ * bytes), "version" (of another version of this library), "precision", "model" (another scene), "length", "checksum" (damaged) or
+ * a value. The simulation is then as it was, bit for bit. One thread per simulation.
+ */
+nekton_status nekton32_sim_load(struct nekton32_sim *sim,
+                                const void *from,
+                                size_t len,
+                                struct nekton_diag *diag);
+
+/**
  * The simulation's model.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
  */

@@ -260,6 +260,48 @@ pub unsafe extern "C" fn nekton32_sim_copy(
     unsafe { report(diag, sim::assign(to, from)) }
 }
 
+/// Bytes that nekton32_sim_save writes; they depend on the model alone.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_save_req(sim: *const SimHandle<f32>, bytes: *mut usize) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(null_mut(), sim::save_req(sim, bytes)) }
+}
+
+/// Writes all that a simulation remembers to out, which has room for len bytes: time, state, method, integrator and its past,
+/// channels, counters, estimates, limit of steps. nekton32_sim_load of any simulation of an equal model, in any process and on any
+/// machine, goes on from there bit for bit (with the same build of this library). The bytes have no alignment and no pointers;
+/// written tells how many there are.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY, ALIASING, MEMORY_TOO_SMALL (out is then not written), BAD_SAVE (a number
+/// of the simulation is not finite). One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_save(
+    sim: *const SimHandle<f32>,
+    out: *mut c_void,
+    len: usize,
+    written: *mut usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::save(sim, out.cast(), len, written)) }
+}
+
+/// Makes a simulation what was saved by nekton32_sim_save, by itself or by another one of an equal model (every value of its scene is
+/// the same); the method becomes the saved one, too. from are exactly the len bytes that were written.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, BUSY, ALIASING, BAD_SAVE: diag->what names what is wrong, "mark" (these are other
+/// bytes), "version" (of another version of this library), "precision", "model" (another scene), "length", "checksum" (damaged) or
+/// a value. The simulation is then as it was, bit for bit. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_load(
+    sim: *mut SimHandle<f32>,
+    from: *const c_void,
+    len: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, sim::load(sim, from.cast(), len)) }
+}
+
 /// The simulation's model.
 /// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED. One thread per simulation.
 #[unsafe(no_mangle)]

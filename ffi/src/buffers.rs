@@ -22,19 +22,19 @@ pub(crate) unsafe fn input<'a, R: Real>(
 }
 
 /// An output buffer of a known length, outside the object, filled with zeros.
-pub(crate) unsafe fn output<'a, R: Real>(
+pub(crate) unsafe fn output<'a, R: Real, T: Copy + Default>(
     parts: &SimParts<'_, R>,
     what: &'static str,
-    first: *mut R,
+    first: *mut T,
     n: usize,
     need: usize,
-) -> Outcome<&'a mut [R]> {
+) -> Outcome<&'a mut [T]> {
     length(n, need)?;
     if n == 0 {
         return Ok(&mut []);
     }
     check_pointer(what, first.cast_const())?;
-    if n > isize::MAX as usize / size_of::<R>() {
+    if n > isize::MAX as usize / size_of::<T>() {
         return Err(Fault::of(Status::SizeOverflow, what, n as f64));
     }
     if parts.overlaps(first.cast_const(), n) {
@@ -44,7 +44,7 @@ pub(crate) unsafe fn output<'a, R: Real>(
     // may never have been.
     Ok(unsafe {
         for i in 0..n {
-            first.add(i).write(R::zero());
+            first.add(i).write(T::default());
         }
         core::slice::from_raw_parts_mut(first, n)
     })

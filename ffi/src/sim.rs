@@ -1,7 +1,7 @@
 //! What simulations are asked to do: start, step, take a state over.
 
 use crate::buffers::{disjoint, finite, input, length, output, sound};
-use crate::convert::{check_pointer, method as read_method};
+use crate::convert::{array, check_pointer, method as read_method};
 use crate::diag::{Fault, Outcome};
 use crate::memory::{check_memory, copy};
 use crate::model::give;
@@ -85,6 +85,44 @@ pub(crate) unsafe fn assign<R: Real>(to: *mut SimHandle<R>, from: *const SimHand
             return Err(Fault::of(Status::BadHandle, "model", f64::NAN));
         }
         to.assign(&from);
+    }
+    Ok(Status::Ok)
+}
+
+pub(crate) unsafe fn save_req<R: Real>(handle: *const SimHandle<R>, bytes: *mut usize) -> Outcome<Status> {
+    check_pointer("bytes", bytes.cast_const())?;
+    // SAFETY: checked above and in `sim`.
+    unsafe { give(bytes, sim(handle)?.view()?.save_len()) }
+}
+
+pub(crate) unsafe fn save<R: Real>(
+    handle: *const SimHandle<R>,
+    out: *mut u8,
+    len: usize,
+    written: *mut usize,
+) -> Outcome<Status> {
+    check_pointer("written", written.cast_const())?;
+    // SAFETY: checked above, in `sim` and in `output`; the caller promises room for `len` bytes, and they are enough.
+    unsafe {
+        let mut parts = sim(handle)?;
+        let need = parts.view()?.save_len();
+        if len < need {
+            return Err(Fault::of(Status::MemoryTooSmall, "len", len as f64));
+        }
+        let out = output(&parts, "out", out, need, need)?;
+        give(written, parts.view()?.save(out)?)
+    }
+}
+
+pub(crate) unsafe fn load<R: Real>(handle: *mut SimHandle<R>, from: *const u8, len: usize) -> Outcome<Status> {
+    // SAFETY: checked in `sim` and `array`.
+    unsafe {
+        let mut parts = sim(handle.cast_const())?;
+        if parts.overlaps(from, len) {
+            return Err(Fault::of(Status::Aliasing, "from", f64::NAN));
+        }
+        let bytes = array("from", from, len)?;
+        parts.view()?.load(bytes)?;
     }
     Ok(Status::Ok)
 }

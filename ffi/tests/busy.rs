@@ -21,6 +21,7 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
     let (mut a, mut b, mut t, mut diag) = (vec![7.0; n * n * n], vec![7.0; n * n * n], 7.0, empty_diag());
     let (p, q) = (a.as_mut_ptr(), b.as_mut_ptr());
     let (from, to) = ([0.0; 4], [1.0; 4]);
+    let mut size = 7;
     let mut counters = nekton_counters::default();
     let (mut energy, mut gap) = (std::mem::MaybeUninit::uninit(), std::mem::MaybeUninit::uninit());
     let (mut resolution, mut error) = (std::mem::MaybeUninit::uninit(), std::mem::MaybeUninit::uninit());
@@ -33,6 +34,9 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
             sim_get_state(sim, &mut t, p, plan_of(other).state_len),
             sim_set_state(sim, 0.0, p, plan_of(other).state_len, d),
             sim_restart(sim),
+            sim_save_req(sim, &mut size),
+            sim_save(sim, p.cast(), 8 * n, &mut size, d),
+            sim_load(sim, p.cast(), 8 * n, d),
             sim_step(sim, d),
             sim_advance(sim, 3.0, d),
             sim_advance_dense(sim, 3.0, 4.0, d),

@@ -49,8 +49,8 @@ fn single(source: &str) -> String {
 
 const STRICT: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror"];
 
-/// Compiles and runs a program; what it prints.
-fn run(name: &str, source: &str) -> String {
+/// Compiles a program.
+fn compile(name: &str, source: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let (c, program) = (folder.join(format!("{name}.c")), folder.join(name));
     std::fs::write(&c, source).unwrap();
@@ -58,10 +58,20 @@ fn run(name: &str, source: &str) -> String {
     compiler.args(["-std=c99", "-O1"]).args(STRICT).arg("-I").arg(root().join("include")).arg("-o").arg(&program);
     let status = compiler.arg(&c).arg(library()).args(["-lm", "-lpthread", "-ldl"]).status().expect("cc runs");
     assert!(status.success(), "{name}.c does not compile");
-    let output = Command::new(&program).output().unwrap();
+    program
+}
+
+/// Runs a program; what it prints.
+fn output_of(program: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(program).args(arguments).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{name} ends with {}:\n{text}", output.status);
+    assert!(output.status.success(), "{} ends with {}:\n{text}", program.display(), output.status);
     text
+}
+
+/// Compiles and runs a program; what it prints.
+fn run(name: &str, source: &str) -> String {
+    output_of(&compile(name, source), &[])
 }
 
 fn source(name: &str) -> String {
@@ -111,6 +121,20 @@ fn programs_of_older_and_newer_headers_are_understood() {
     for (name, text) in [("older_and_newer", source.clone()), ("older_and_newer32", single(&source))] {
         let printed = run(name, &text);
         assert!(printed.lines().count() > 30 && !printed.contains("WRONG"), "{printed}");
+    }
+}
+
+#[test]
+fn what_one_process_saves_goes_on_in_another_bit_for_bit() {
+    let source = source("saved.c");
+    for (name, text) in [("saved", source.clone()), ("saved32", single(&source))] {
+        let program = compile(name, &text);
+        let file = program.with_extension("bin");
+        let file = file.to_str().unwrap();
+        let whole = output_of(&program, &[file, "whole"]);
+        assert!(whole.lines().count() == 10, "{whole}");
+        assert_eq!(output_of(&program, &[file, "save"]), "");
+        assert_eq!(output_of(&program, &[file, "load"]), whole);
     }
 }
 

@@ -47,6 +47,9 @@ template <class R> struct Api;
         static constexpr auto sim_create = &P##_sim_create;                                                                    \
         static constexpr auto sim_free = &P##_sim_free;                                                                        \
         static constexpr auto sim_copy = &P##_sim_copy;                                                                        \
+        static constexpr auto sim_save_req = &P##_sim_save_req;                                                                \
+        static constexpr auto sim_save = &P##_sim_save;                                                                        \
+        static constexpr auto sim_load = &P##_sim_load;                                                                        \
         static constexpr auto sim_model = &P##_sim_model;                                                                      \
         static constexpr auto sim_time = &P##_sim_time;                                                                        \
         static constexpr auto sim_positions = &P##_sim_positions;                                                              \

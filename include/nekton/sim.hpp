@@ -77,6 +77,24 @@ public:
         return detail::call(diag, [&](nekton_diag *d) { return Api::sim_copy(sim_, other.sim_, d); });
     }
 
+    /** Bytes that save writes. */
+    std::size_t save_size() const
+    {
+        std::size_t n = 0;
+        detail::done(Api::sim_save_req(sim_, &n));
+        return n;
+    }
+    /** Writes all that the simulation remembers to memory of len bytes; written: how many there are. */
+    nekton_status save(void *out, std::size_t len, std::size_t &written, nekton_diag *diag = nullptr) const
+    {
+        return detail::call(diag, [&](nekton_diag *d) { return Api::sim_save(sim_, out, len, &written, d); });
+    }
+    /** Becomes what was saved, by itself or by another simulation of an equal model, in any process. */
+    nekton_status load(const void *from, std::size_t len, nekton_diag *diag = nullptr)
+    {
+        return detail::call(diag, [&](nekton_diag *d) { return Api::sim_load(sim_, from, len, d); });
+    }
+
     /** Time of the state shown; NaN if there is no simulation. */
     R time() const
     {

@@ -55,7 +55,7 @@ impl<R: Real> SimHead<R> {
     /// [`Sim::remembered`] have to be copied with it. The scratch stays its own.
     pub fn put_back(&mut self, other: &SimHead<R>) {
         self.progress = other.progress;
-        self.kept.shown = false;
+        (self.kept.shown, self.kept.before) = (false, other.progress.arrived);
     }
 }
 

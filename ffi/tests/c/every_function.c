@@ -125,6 +125,16 @@ int main(void) {
         MUST(nekton_sim_advance(sim, to[0], &diag));
     }
     MUST(nekton_sim_copy(copy, sim, &diag));
+    /* Saved and loaded again, the copy is what it was. */
+    size_t bytes = 0, written = 0;
+    MUST(nekton_sim_save_req(copy, &bytes));
+    void *saved = malloc(bytes);
+    if (!saved) return 7;
+    MUST(nekton_sim_save(copy, saved, bytes, &written, &diag));
+    if (written != bytes) return 8;
+    MUST(nekton_sim_step(copy, &diag));
+    MUST(nekton_sim_load(copy, saved, written, &diag));
+    free(saved);
     MUST(nekton_sim_set_step_limit(sim, 100));
     MUST(nekton_sim_model(copy, &same));
     if (same != model) return 6;
