@@ -110,7 +110,7 @@ fn wave(phase: f64) -> [Harmonic<f64>; 1] {
 fn a_swimmer_that_begins_after_a_hundred_seconds_swims_as_far_as_one_that_begins_at_once() {
     let place = |from: f64| {
         let (front, rear) = (wave(0.0 - from), wave(-2.3 - from));
-        let window = Some(Window { from, to: from + 12.566, ramp: 3.14 });
+        let window = Some(Window { from, to: from + 12.566, ramp: 3.2 });
         let one = ellipse(1.0, 0.3, 32);
         let hinge = |parent, terms| {
             let drive = Drive::Motion(Signal::Harmonic { terms, window });
