@@ -438,7 +438,7 @@ fn the_least_tolerance_in_time_is_taken_and_the_next_smaller_refused() {
     let bodies = [body(&links, [0.0; 3], [0.0; 3])];
     let model = Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..FLUID }).unwrap());
     let told = |relative, absolute| {
-        SimBuf::new(Arc::clone(&model), Method::Adams { relative, absolute }).err().map(|error| error.status)
+        SimBuf::new(Arc::clone(&model), Method::adams(relative, absolute)).err().map(|error| error.status)
     };
     let least = 4.0 * f64::EPSILON;
     assert_eq!(told(least, 1e-9), None);

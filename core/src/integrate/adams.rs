@@ -375,7 +375,7 @@ impl<R: Real> Adams<R> {
                 (step, last) = if seen.abs() < shortest { (shortest * sign, false) } else { (seen, false) };
             }
             // Beside steps that were much longer all orders are the trapezoidal rule, and do not differ: the estimate is blind.
-            if R::lit(8.0) * step.abs() < self.last_step.abs() {
+            if R::lit(3.0) * step.abs() < self.last_step.abs() {
                 self.kink();
             }
             let time = if last { stop } else { self.time + (self.time_rest + step) };
