@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use crate::ending::say;
 use crate::record::Record;
-use crate::run::Watch;
 use crate::scene_file::Problem;
+use crate::watch::Watch;
 use nekton::Sim;
 use walk::Io;
 

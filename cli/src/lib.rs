@@ -15,6 +15,7 @@ mod scene_file;
 mod setup;
 mod signals;
 mod trade;
+mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -16,6 +16,7 @@ use crate::scene_file::{Integrator, Problem, RunDef, SceneFile};
 use crate::setup::Setup;
 use crate::signals;
 use crate::trade;
+use crate::watch::Watch;
 use nekton::{Model, Resolution, Sim};
 
 /// Points with which an outline is drawn.
@@ -289,23 +290,6 @@ fn keep(record: &mut Record, (row, between): (Row, String)) {
     record.rows.push(row);
 }
 
-/// A time during which something is to be noticed.
-pub struct Episode {
-    /// Since when.
-    pub from: f64,
-    /// When it was worst, and what was told then.
-    pub worst: (f64, Error),
-    /// The smallest gap then.
-    pub gap: f64,
-}
-
-/// Follows what a simulation has to say about its errors: one notice for each episode of each kind.
-#[derive(Default)]
-pub struct Watch {
-    /// One for each kind.
-    pub episodes: [Option<Episode>; 4],
-}
-
 /// While something slowly comes off from rest, what the tolerance allows may be all its energy: a drift below this many tolerances
 /// of the largest kinetic energy of the whole run is told to nobody.
 const TOLERATED: f64 = 10.0;
@@ -319,55 +303,6 @@ fn explained(record: &Record, integrator: Integrator) -> f64 {
         _ => TOLERANCE,
     };
     record.energy_drift().map_or(0.0, |(_, kinetic)| (TOLERATED * tolerance).min(1e-3) * kinetic)
-}
-
-/// The larger, the worse.
-fn severity(notice: &Error) -> f64 {
-    match notice.status {
-        // The step that would have seen the drive.
-        Status::DriveUnresolved => -notice.value,
-        _ => notice.value.abs(),
-    }
-}
-
-impl Watch {
-    /// After a row.
-    fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
-        let notices = sim.notices();
-        let gap = if notices.iter().any(Option::is_some) { sim.gap().distance } else { f64::INFINITY };
-        for (episode, notice) in self.episodes.iter_mut().zip(notices) {
-            let Some((time, notice)) = notice else {
-                tell(episode, setup, sim.time(), record);
-                continue;
-            };
-            let episode = episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
-            if severity(&notice) > severity(&episode.worst.1) {
-                (episode.worst, episode.gap) = ((time, notice), gap);
-            }
-        }
-    }
-
-    /// The episodes, if there are any, are over.
-    fn end(&mut self, setup: &Setup, to: f64, record: &mut Record) {
-        self.episodes.iter_mut().for_each(|episode| tell(episode, setup, to, record));
-    }
-}
-
-/// An episode, if there is one, is over.
-fn tell(episode: &mut Option<Episode>, setup: &Setup, to: f64, record: &mut Record) {
-    let Some(Episode { from, worst: (time, notice), gap }) = episode.take() else { return };
-    let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
-    let text = setup.scene.describe(&notice);
-    let more = match notice.status {
-        Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
-        Status::EnergyDrift => format!(" J/m, the largest kinetic energy up to then {:.3e} J/m", notice.limit),
-        _ => String::new(),
-    };
-    let text = format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}");
-    match notice.status {
-        Status::EnergyDrift => record.drifts.push((notice.value.abs(), text)),
-        _ => record.notices.push(text),
-    }
 }
 
 /// Error indicators and counters at the end.

@@ -61,7 +61,7 @@ fn loading_is_refused_as_documented_and_then_changes_nothing() {
         let mut bytes = saved(sim);
         let before = saved(other);
         let n = bytes.len();
-        let mut refused = |from: *const u8, len: usize, status: Status, named: &str| {
+        let refused = |from: *const u8, len: usize, status: Status, named: &str| {
             let mut diag = empty_diag();
             assert_eq!(unsafe { sim_load(other, from.cast(), len, &mut diag) }, status.code(), "{named}");
             assert_eq!((diag.status, what(&diag).as_str()), (status.code(), named));

@@ -5,7 +5,7 @@ use nekton::status::{Error, Place, Status};
 use nekton::{Resolution, TimeError};
 
 use crate::record::{Energies, Nearest, Record, Row};
-use crate::run::{Episode, Watch};
+use crate::watch::{Episode, Watch};
 
 /// Fields on their way out or in, one after the other.
 pub enum Io<'b> {
