@@ -20,6 +20,7 @@ classdef Nekton < handle
 %   sim.advance(t)        to exactly time t
 %   sim.show(t, t_stop)   the same, cheaper when output is wanted at many times up to t_stop
 %   sim.setStepLimit(n)   steps that one such call may make (at first 1e6)
+%   bytes = sim.toBytes   all that it remembers; sim.fromBytes(bytes) of an equal scene, also in another session, goes on from there
 %   [y, t] = sim.state    integrated state;  sim.setState(t, y) sets it
 %   dy = sim.rhs(t, y)    its rate, for ode45, ode113, lsode; the simulation does not change
 %   sim.time, sim.positions, sim.velocities    3 x links: x, y, theta of the centres of mass, and their rates
@@ -176,6 +177,36 @@ classdef Nekton < handle
         %SETSTEPLIMIT  Steps that one call of advance or show (with controls: one control step) may make before it ends with the
         %   error nekton:sim:TooManySteps; at first 1e6.
             nekton_mex('step_limit', self.id, n);
+        end
+
+        function bytes = toBytes(self)
+        %TOBYTES  All that the simulation remembers (state, method, past of the integrator, counters, estimates) as a row of class
+        %   uint8. With controls at the end of a control step only.
+            % Between commands the object remembers more than the simulation does.
+            if self.plan.channels > 0 && (isempty(self.last) || self.last{3} ~= self.command(self.time()))
+                error('nekton:sim:Unsupported', ...
+                    'toBytes: with controls, advance to a multiple of control_step (%g) first', self.controlStep);
+            end
+            bytes = nekton_mex('save', self.id);
+        end
+
+        function fromBytes(self, bytes)
+        %FROMBYTES  fromBytes(bytes) makes the simulation what toBytes gave, here or in another session, to the bit. The scenes must
+        %   be equal in every value, and so must be the controls; the method is that of the bytes. Bytes of another scene and damaged ones are
+        %   refused with nekton:sim:BadSave, and nothing changes.
+            if self.plan.channels == 0
+                nekton_mex('load', self.id, bytes);
+                return
+            end
+            before = nekton_mex('save', self.id);
+            nekton_mex('load', self.id, bytes);
+            try
+                t = self.command(self.time());
+                self.last = {t, [], t, Nekton.evaluate(self.control, t)};
+            catch problem
+                nekton_mex('load', self.id, before);
+                rethrow(problem);
+            end
         end
 
         function t = time(self)
@@ -408,6 +439,15 @@ classdef Nekton < handle
             if isempty(self.last) || self.last{3} ~= next
                 self.interval(next - self.controlStep, next);
             end
+        end
+
+        function t = command(self, t)
+            % The end of the control step that t is but for rounding; NaN: none.
+            near = round(t / self.controlStep) * self.controlStep;
+            if abs(near - t) > 8 * eps(abs(t) + self.controlStep)
+                near = NaN;
+            end
+            t = near;
         end
 
         function interval(self, from, to)

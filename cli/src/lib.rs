@@ -1,6 +1,7 @@
 //! The command `nekton`: scene files in; tables, plots and an animated report out. A library only so that the developers'
 //! commands draw with the same [`plots`].
 
+mod checkpoint;
 mod ending;
 mod evaluate;
 mod ingredients;
@@ -12,10 +13,13 @@ mod report;
 mod run;
 mod scene_file;
 mod setup;
+mod signals;
 mod trade;
+mod watch;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use ending::Ending;
@@ -24,7 +28,7 @@ const EXIT_CODES: &str = "\
 Exit codes:
   0  done
   2  bad input: one line on standard error names file, line and a way out; nothing was written
-  3  the run stopped before its end (contact, a singular matrix, a tolerance that cannot be met); the results up to
+  3  the run stopped before its end (contact, a singular matrix, a tolerance that cannot be met, SIGINT, SIGTERM); the results up to
      then were written, and report.html says why it stopped";
 
 /// Rigid and articulated bodies in a two-dimensional ideal fluid.
@@ -51,6 +55,18 @@ enum Command {
         /// Let a channel of the scene follow a table (t,u[,du[,ddu]]); once for each channel
         #[arg(long = "channel", value_name = "NAME=FILE", value_parser = channel)]
         channels: Vec<(String, PathBuf)>,
+        /// Keep in this folder what it takes to go on after the process has ended, however it ended
+        #[arg(long, value_name = "DIR", conflicts_with = "error")]
+        checkpoint: Option<PathBuf>,
+        /// Time of the wall clock between two checkpoints (90, 90s, 5m, 1h), which are written after a row of the tables
+        #[arg(long, value_name = "TIME", value_parser = span, default_value = "60s", requires = "checkpoint")]
+        every: Duration,
+        /// Go on from the checkpoint, if there is one; the files will be those of a run without interruption
+        #[arg(long, requires = "checkpoint")]
+        resume: bool,
+        /// Replace complete results by shorter ones, and a checkpoint by a run that begins anew
+        #[arg(long, conflicts_with = "resume")]
+        force: bool,
     },
     /// Measure the trade between speed and accuracy: many settings against a converged reference
     #[command(after_help = EXIT_CODES)]
@@ -104,6 +120,23 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A time with its unit.
+fn span(text: &str) -> Result<Duration, String> {
+    let unit = text.find(|c: char| c.is_ascii_alphabetic() && c != 'e').unwrap_or(text.len());
+    let (number, unit) = text.split_at(unit);
+    let factor = match unit {
+        "" | "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => f64::NAN,
+    };
+    number
+        .parse()
+        .ok()
+        .and_then(|x: f64| Duration::try_from_secs_f64(x * factor).ok())
+        .ok_or_else(|| "must be a time such as 90, 90s, 5m or 1h".into())
+}
+
 /// A channel's name and the path of a table.
 fn channel(text: &str) -> Result<(String, PathBuf), String> {
     match text.split_once('=') {
@@ -115,7 +148,10 @@ fn channel(text: &str) -> Result<(String, PathBuf), String> {
 /// Does what the arguments of the process say.
 pub fn command() -> ExitCode {
     let ending = match Arguments::parse().command {
-        Command::Run { scene, out, error, channels } => run::run(&scene, &out, error, &channels),
+        Command::Run { scene, out, error, channels, checkpoint, every, resume, force } => {
+            let wish = checkpoint::Wish { folder: checkpoint, every, resume, force };
+            run::run(&scene, &out, error, &channels, &wish)
+        }
         Command::Trade { scene, out, error, limit, until, quick } => {
             trade::trade(&scene, &trade::Wish { out, errors: error, limit, until, quick })
         }

@@ -136,6 +136,39 @@ impl Target {
     }
 }
 
+/// The results of a complete run that a folder holds.
+pub struct Earlier {
+    /// The time that they reach.
+    pub reached: f64,
+}
+
+impl Earlier {
+    /// Looks for them; results of a run that stopped early are none.
+    pub fn find(folder: &Path) -> Option<Self> {
+        let report = fs::read_to_string(folder.join("report.html")).ok()?;
+        let table = fs::read_to_string(folder.join("trajectory.csv")).ok()?;
+        let time = table.lines().skip(1).last()?.split(',').next()?.parse().ok()?;
+        report.contains(crate::report::COMPLETE).then_some(Earlier { reached: time })
+    }
+
+    /// Refuses a run that will not come as far.
+    pub fn allows(&self, folder: &Path, duration: f64) -> Result<(), Problem> {
+        if duration >= self.reached {
+            return Ok(());
+        }
+        let text =
+            format!("holds the results of a complete run to t = {} s, and this one ends at {duration} s", self.reached);
+        Err(Problem::file(folder, text).hint("name another folder with --out, or replace them with --force"))
+    }
+}
+
+/// The folder beside a folder for results that are not to replace its own.
+pub fn beside(folder: &Path) -> PathBuf {
+    let mut name = folder.file_name().unwrap_or_default().to_owned();
+    name.push("-stopped");
+    folder.with_file_name(name)
+}
+
 fn parent(folder: &Path) -> &Path {
     match folder.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,

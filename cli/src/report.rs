@@ -9,11 +9,14 @@ const PAGE: &str = include_str!("report.html");
 /// The animation interpolates between its frames; more than this many only make the page large.
 const MOST_FRAMES: usize = 2000;
 
+/// What a page says of a run that reached its end.
+pub const COMPLETE: &str = "<p class=\"ok\">The run reached its end.</p>";
+
 /// The page.
 pub fn page(title: &str, record: &Record, plots: &[(&'static str, String)], scene_text: &str) -> String {
     let figures: String = plots.iter().map(|(_, svg)| format!("<figure>{}</figure>\n", inline(svg))).collect();
     let status = match &record.stopped {
-        None => "<p class=\"ok\">The run reached its end.</p>".to_owned(),
+        None => COMPLETE.to_owned(),
         Some(why) => format!("<p class=\"stopped\">The run stopped early: {}.</p>", escape(why)),
     };
     let notices: String = record.notices.iter().map(|n| format!("<li>{}</li>", escape(n))).collect();

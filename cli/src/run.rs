@@ -6,14 +6,17 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place, Status};
 
+use crate::checkpoint::{Checkpoint, Wish};
 use crate::ending::{Ending, say};
-use crate::output::{Target, tables};
+use crate::output::{Earlier, Target, beside, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
 use crate::report;
 use crate::scene_file::{Integrator, Problem, RunDef, SceneFile};
 use crate::setup::Setup;
+use crate::signals;
 use crate::trade;
+use crate::watch::Watch;
 use nekton::{Model, Resolution, Sim};
 
 /// Points with which an outline is drawn.
@@ -22,12 +25,23 @@ const OUTLINE_POINTS: usize = 240;
 const PROGRESS: u64 = 1000;
 
 /// Runs a scene and writes its results.
-pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, PathBuf)]) -> Result<Ending, Problem> {
+pub fn run(
+    path: &Path,
+    folder: &Path,
+    error: Option<f64>,
+    channels: &[(String, PathBuf)],
+    wish: &Wish,
+) -> Result<Ending, Problem> {
     let mut scene = SceneFile::open(path)?;
     scene.feed(channels)?;
     let mut setup = Setup::of(scene)?;
     let mut plan = setup.scene.run()?.clone();
     let target = Target::check(folder)?;
+    let earlier = Earlier::find(folder).filter(|_| !wish.force);
+    if let Some(earlier) = &earlier {
+        earlier.allows(folder, plan.duration)?;
+    }
+    let asked = signals::listen();
     let choice = error.map(|error| trade::choose(path, &setup.scene, error)).transpose()?;
     if let Some(choice) = &choice {
         setup.remake(choice)?;
@@ -38,15 +52,22 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, 
     let mut view = sim.view();
     let clock = Instant::now();
     let mut record = describe(&setup, &plan);
-    let stopped = integrate(&setup, &plan, &mut view, &mut record)?;
+    let mut checkpoint = Checkpoint::open(wish, setup.model.view().fingerprint(), &record)?;
+    let stopped = integrate(&setup, &plan, &mut view, &mut record, checkpoint.as_mut(), &asked)?;
     figures(&view, &mut record);
     let time = clock.elapsed();
-    record.stopped = stopped.as_ref().map(|(t, e)| {
-        let advice = match e.status {
-            Status::TooManySteps => format!("; {}", plan.integrator.way_to_fewer_steps()),
-            _ => String::new(),
-        };
-        format!("t = {t:.6} s: {}{advice}", setup.scene.describe(e))
+    record.stopped = stopped.as_ref().map(|(t, why)| match why {
+        Stop::Asked(signal) => {
+            let advice = if checkpoint.is_some() { "; --resume goes on from there" } else { "" };
+            format!("t = {t:.6} s: interrupted by {signal}{advice}")
+        }
+        Stop::Failed(e) => {
+            let advice = match e.status {
+                Status::TooManySteps => format!("; {}", plan.integrator.way_to_fewer_steps()),
+                _ => String::new(),
+            };
+            format!("t = {t:.6} s: {}{advice}", setup.scene.describe(e))
+        }
     });
 
     let title = path.file_stem().map_or("scene".into(), |s| s.to_string_lossy());
@@ -56,9 +77,34 @@ pub fn run(path: &Path, folder: &Path, error: Option<f64>, channels: &[(String, 
     let mut files = tables(&record);
     files.extend(plots.into_iter().map(|(name, svg)| (name, svg.into_bytes())));
     files.push(("report.html", page.into_bytes()));
+    let reached = view.time();
+    let (target, folder) = match earlier.filter(|e| record.stopped.is_some() && e.reached > reached) {
+        None => (target, folder.to_owned()),
+        Some(earlier) => {
+            let aside = beside(folder);
+            eprintln!(
+                "{} holds the results of a complete run to t = {} s, which are kept; this one's are in {} (--force replaces)",
+                folder.display(),
+                earlier.reached,
+                aside.display()
+            );
+            (Target::check(&aside)?, aside)
+        }
+    };
     target.write(&files)?;
-    summary(&record, folder, time);
+    if let (Some(checkpoint), None | Some((_, Stop::Failed(_)))) = (&checkpoint, &stopped) {
+        // There is nothing to go on with.
+        checkpoint.done();
+    }
+    summary(&record, &folder, time);
     Ok(if record.stopped.is_some() { Ending::Stopped } else { Ending::Complete })
+}
+
+/// Why a run ended before its end.
+enum Stop {
+    /// By a signal of this name.
+    Asked(&'static str),
+    Failed(Error),
 }
 
 /// What is known before the first step.
@@ -118,16 +164,24 @@ fn integrate(
     run: &RunDef,
     sim: &mut Sim<'_, f64>,
     record: &mut Record,
-) -> Result<Option<(f64, Error)>, Problem> {
-    let bar = progress(run.duration);
-    let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
-    keep(record, row);
+    mut checkpoint: Option<&mut Checkpoint>,
+    asked: &signals::Asked,
+) -> Result<Option<(f64, Stop)>, Problem> {
     let mut watch = Watch::default();
-    watch.look(setup, sim, record);
+    let first = match checkpoint.as_mut() {
+        Some(checkpoint) if checkpoint.resumes() => checkpoint.resume(sim, record, &mut watch)?,
+        _ => None,
+    };
+    let bar = progress(run.duration);
+    if first.is_none() {
+        let row = sample(setup, sim).map_err(|e| setup.problem(&e))?;
+        keep(record, row);
+        watch.look(setup, sim, record);
+    }
     let mut stopped = None;
     // The tolerance keeps a last row that would follow the one before by rounding only from being written.
     let rows = (run.duration / run.output_interval - 1e-9).ceil().max(1.0) as usize;
-    for k in 1..=rows {
+    for k in first.unwrap_or(1)..=rows {
         let t = if k == rows { run.duration } else { k as f64 * run.output_interval };
         let step = match run.integrator {
             Integrator::Adams { .. } => sim.advance_dense(t, run.duration),
@@ -140,9 +194,17 @@ fn integrate(
                 watch.look(setup, sim, record);
             }
             Err(e) => {
-                stopped = Some((sim.time(), e));
+                stopped = Some((sim.time(), Stop::Failed(e)));
                 break;
             }
+        }
+        let signal = asked.signal().filter(|_| k < rows);
+        if let Some(checkpoint) = checkpoint.as_mut().filter(|_| k < rows) {
+            checkpoint.keep(signal.is_some(), k + 1, sim, record, &mut watch);
+        }
+        if let Some(signal) = signal {
+            stopped = Some((sim.time(), Stop::Asked(signal)));
+            break;
         }
     }
     if stopped.is_some() {
@@ -228,19 +290,6 @@ fn keep(record: &mut Record, (row, between): (Row, String)) {
     record.rows.push(row);
 }
 
-/// A time during which something is to be noticed.
-struct Episode {
-    from: f64,
-    worst: (f64, Error),
-    gap: f64,
-}
-
-/// Follows what a simulation has to say about its errors: one notice for each episode of each kind.
-#[derive(Default)]
-struct Watch {
-    episodes: [Option<Episode>; 4],
-}
-
 /// While something slowly comes off from rest, what the tolerance allows may be all its energy: a drift below this many tolerances
 /// of the largest kinetic energy of the whole run is told to nobody.
 const TOLERATED: f64 = 10.0;
@@ -254,55 +303,6 @@ fn explained(record: &Record, integrator: Integrator) -> f64 {
         _ => TOLERANCE,
     };
     record.energy_drift().map_or(0.0, |(_, kinetic)| (TOLERATED * tolerance).min(1e-3) * kinetic)
-}
-
-/// The larger, the worse.
-fn severity(notice: &Error) -> f64 {
-    match notice.status {
-        // The step that would have seen the drive.
-        Status::DriveUnresolved => -notice.value,
-        _ => notice.value.abs(),
-    }
-}
-
-impl Watch {
-    /// After a row.
-    fn look(&mut self, setup: &Setup, sim: &mut Sim<'_, f64>, record: &mut Record) {
-        let notices = sim.notices();
-        let gap = if notices.iter().any(Option::is_some) { sim.gap().distance } else { f64::INFINITY };
-        for (episode, notice) in self.episodes.iter_mut().zip(notices) {
-            let Some((time, notice)) = notice else {
-                tell(episode, setup, sim.time(), record);
-                continue;
-            };
-            let episode = episode.get_or_insert(Episode { from: time, worst: (time, notice), gap });
-            if severity(&notice) > severity(&episode.worst.1) {
-                (episode.worst, episode.gap) = ((time, notice), gap);
-            }
-        }
-    }
-
-    /// The episodes, if there are any, are over.
-    fn end(&mut self, setup: &Setup, to: f64, record: &mut Record) {
-        self.episodes.iter_mut().for_each(|episode| tell(episode, setup, to, record));
-    }
-}
-
-/// An episode, if there is one, is over.
-fn tell(episode: &mut Option<Episode>, setup: &Setup, to: f64, record: &mut Record) {
-    let Some(Episode { from, worst: (time, notice), gap }) = episode.take() else { return };
-    let gap = if gap.is_finite() { format!(", gap then {gap:.3e} m") } else { String::new() };
-    let text = setup.scene.describe(&notice);
-    let more = match notice.status {
-        Status::Unresolved => format!(", asked {:.1e}", record.tolerance),
-        Status::EnergyDrift => format!(" J/m, the largest kinetic energy up to then {:.3e} J/m", notice.limit),
-        _ => String::new(),
-    };
-    let text = format!("t = {from:.6} to {to:.6} s: {text}{more}; worst at t = {time:.6} s{gap}");
-    match notice.status {
-        Status::EnergyDrift => record.drifts.push((notice.value.abs(), text)),
-        _ => record.notices.push(text),
-    }
 }
 
 /// Error indicators and counters at the end.

@@ -80,6 +80,28 @@ static void step_limit(call *c)
     if (o->twin) check(nekton_sim_set_step_limit(o->twin, n), NULL, "sim");
 }
 
+/* All that the simulation remembers, a row of bytes. */
+static void save(call *c)
+{
+    object *o = get(c->prhs[0]);
+    nekton_diag diag;
+    size_t bytes = 0, written = 0;
+    check(nekton_sim_save_req(o->sim, &bytes), NULL, "sim");
+    mxArray *out = mxCreateNumericMatrix(1, (mwSize)bytes, mxUINT8_CLASS, mxREAL);
+    check(nekton_sim_save(o->sim, mxGetData(out), bytes, &written, &diag), &diag, "sim");
+    c->plhs[0] = out;
+}
+
+static void load(call *c)
+{
+    object *o = get(c->prhs[0]);
+    nekton_diag diag;
+    const mxArray *bytes = c->prhs[1];
+    if (!mxIsUint8(bytes)) mexErrMsgIdAndTxt("nekton:arg:class", "what was saved must be of class uint8");
+    check(nekton_sim_load(o->sim, mxGetData(bytes), (size_t)mxGetNumberOfElements(bytes), &diag), &diag, "sim");
+    o->unresolved = false;
+}
+
 /* u, du, ddu (channels x 3) at time t. */
 static const double *controls(object *o, const mxArray *a)
 {
@@ -139,6 +161,8 @@ const command step_commands[] = {
     {"advance", advance, 2, 2, 0},
     {"advance_dense", advance_dense, 3, 3, 0},
     {"step_limit", step_limit, 2, 2, 0},
+    {"save", save, 1, 1, 1},
+    {"load", load, 2, 2, 0},
     {"channels", channels, 5, 5, 0},
     {"rhs", rhs, 3, 4, 1},
     {NULL, NULL, 0, 0, 0},
