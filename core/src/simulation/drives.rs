@@ -68,6 +68,8 @@ impl<R: Real> Sim<'_, R> {
             // It has looked ahead.
             self.restart();
         } else if jump != Jump::None {
+            // What is found out now of the last step is not of the call that made it.
+            self.begin_watch();
             self.progress.adams.jump();
             self.forget_rates();
         } else if channel_kink(motion, t, old, new) {

@@ -115,13 +115,14 @@ impl<R: Real> Sim<'_, R> {
 
     /// Forgets the integrator's past, as after a jump of the drives.
     pub fn restart(&mut self) {
+        self.begin_watch();
         self.end_stretch();
         self.forget_steps();
         self.progress.set_clock();
     }
 
     /// A call begins: its first step forgets the indicators of the call before.
-    fn begin_watch(&mut self) {
+    pub(crate) fn begin_watch(&mut self) {
         if self.progress.watch == Watch::Present {
             self.progress.watch = Watch::Past;
         }
