@@ -134,11 +134,21 @@ impl<R: Real> Rows<'_, R> {
         (first, last)
     }
 
+    /// The first row that is clearly later.
+    fn first_after(&self, t: R) -> usize {
+        self.row_at(t).map_or_else(|| self.rows_until(t), |k| self.of_one_time(k).1 + 1)
+    }
+
+    /// Rows strictly within (t, end), by their numbers.
+    fn within(&self, t: R, end: R) -> impl Iterator<Item = usize> {
+        let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
+        (self.first_after(t)..last).take_while(move |k| self.time(*k) < end)
+    }
+
     fn region(&self, at: Moment<R>) -> Region {
         let behind = match self.row_at(at.t) {
-            Some(k) if at.after => self.of_one_time(k).1 + 1,
-            Some(k) => self.of_one_time(k).0,
-            None => self.rows_until(at.t),
+            Some(k) if !at.after => self.of_one_time(k).0,
+            _ => self.first_after(at.t),
         };
         match behind.checked_sub(1) {
             None => Region::Before,
@@ -186,13 +196,7 @@ impl<R: Real> Rows<'_, R> {
     }
 
     fn jump_of(&self, motion: bool, k: usize) -> Jump {
-        let (mut before, mut after) = self.sides(k);
-        if !motion {
-            (before, after) = ([before[0], R::zero(), R::zero()], [after[0], R::zero(), R::zero()]);
-        }
-        if before == after {
-            return Jump::None;
-        }
+        let (before, after) = self.sides(k);
         let (first, last) = self.of_one_time(k);
         let beside = [first.checked_sub(1), (last + 1 < self.count()).then_some(last)];
         judge(motion, before, after, beside.into_iter().flatten().map(|k| self.piece(k)))
@@ -205,29 +209,13 @@ impl<R: Real> Rows<'_, R> {
 
     /// First jump strictly within (t, end). O(rows in between).
     pub(super) fn next_jump(&self, motion: bool, t: R, end: R) -> Option<R> {
-        let first = match self.row_at(t) {
-            Some(k) => self.of_one_time(k).1 + 1,
-            None => self.rows_until(t),
-        };
-        let last = self.row_at(end).map(|k| self.of_one_time(k).0);
-        (first..last.unwrap_or(self.count()))
-            .take_while(|k| self.time(*k) < end)
-            .find(|k| self.jump_of(motion, *k) != Jump::None)
-            .map(|k| self.time(k))
+        self.within(t, end).find(|k| self.jump_of(motion, *k) != Jump::None).map(|k| self.time(k))
     }
 
     /// First row strictly within (t, end) at which the drive loses smoothness that matters within that time: by more than a thousandth of
     /// its size. A method without an estimate ends its steps there. O(rows in between).
     pub(super) fn next_kink(&self, motion: bool, t: R, end: R) -> Option<R> {
-        let first = match self.row_at(t) {
-            Some(k) => self.of_one_time(k).1 + 1,
-            None => self.rows_until(t),
-        };
-        let last = self.row_at(end).map_or(self.count(), |k| self.of_one_time(k).0);
-        (first..last)
-            .take_while(|k| self.time(*k) < end)
-            .find(|k| self.matters(motion, *k, end - t))
-            .map(|k| self.time(k))
+        self.within(t, end).find(|k| self.matters(motion, *k, end - t)).map(|k| self.time(k))
     }
 
     /// Whether the row that a time means is such a one.
@@ -265,10 +253,7 @@ impl<R: Real> Rows<'_, R> {
         let mut limit = h;
         if share == Seen::Well {
             // Within one quintic, which a method of order 6 integrates exactly.
-            let next = match self.row_at(t) {
-                Some(k) => self.of_one_time(k).1 + 1,
-                None => self.rows_until(t),
-            };
+            let next = self.first_after(t);
             if next < self.count() {
                 limit = limit.min(self.time(next) - t);
             }
@@ -316,17 +301,9 @@ impl<R: Real> Rows<'_, R> {
 /// What jumps when a channel of one piece is given another piece at time `t`.
 pub(crate) fn channel_jump<R: Real>(motion: bool, t: R, old: &[R], new: &[R]) -> Jump {
     let (old, new) = (Rows(old), Rows(new));
-    let (mut before, mut after) = (old.evaluate(Moment { t, after: false }), new.evaluate(Moment { t, after: true }));
-    // Only what drives can be told from rounding by its size.
-    if !motion {
-        (before, after) = ([before[0], R::zero(), R::zero()], [after[0], R::zero(), R::zero()]);
-    }
-    judge(
-        motion,
-        before,
-        after,
-        [old, new].into_iter().filter(|rows| rows.time(1) > rows.time(0)).map(|rows| rows.piece(0)),
-    )
+    let (before, after) = (old.evaluate(Moment { t, after: false }), new.evaluate(Moment { t, after: true }));
+    let beside = [old, new].into_iter().filter(|rows| rows.time(1) > rows.time(0)).map(|rows| rows.piece(0));
+    judge(motion, before, after, beside)
 }
 
 /// Whether the slope of what drives (ü, or a torque) changes at `t` from one piece of a channel to the next, by more than a thousandth of
@@ -346,9 +323,10 @@ pub(crate) fn channel_kink<R: Real>(motion: bool, t: R, old: &[R], new: &[R]) ->
 }
 
 /// What kind of jump the difference of both sides is. Rounding is none, nor is a millionth of what the pieces beside it do in a motion's
-/// value and rate.
+/// value and rate. Of a torque only the value acts.
 fn judge<R: Real>(motion: bool, before: [R; 3], after: [R; 3], beside: impl Iterator<Item = Piece<R>>) -> Jump {
-    if before == after {
+    let kinds: &[Jump] = if motion { &[Jump::Value, Jump::Rate, Jump::Force] } else { &[Jump::Force] };
+    if before.iter().zip(&after).take(kinds.len()).all(|(a, b)| a == b) {
         return Jump::None;
     }
     let mut allowed = [R::zero(); 3];
@@ -360,9 +338,9 @@ fn judge<R: Real>(motion: bool, before: [R; 3], after: [R; 3], beside: impl Iter
             *allowed = allowed.max(x);
         }
     }
-    let mut kinds = if motion { [Jump::Value, Jump::Rate, Jump::Force] } else { [Jump::Force; 3] }.into_iter();
     let mut sides = before.into_iter().zip(after).zip(allowed);
-    kinds.find(|_| sides.next().is_some_and(|((a, b), allowed)| (b - a).abs() > allowed)).unwrap_or(Jump::None)
+    let jumps = |_: &&Jump| sides.next().is_some_and(|((a, b), allowed)| (b - a).abs() > allowed);
+    kinds.iter().find(jumps).copied().unwrap_or(Jump::None)
 }
 
 #[cfg(test)]

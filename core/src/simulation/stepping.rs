@@ -50,7 +50,7 @@ impl<R: Real> Sim<'_, R> {
     /// with a shortened Runge–Kutta step, so output times should be multiples of its step.
     ///
     /// # Errors
-    /// As [`Sim::advance`]; `BadStep` if `t_out` is before the time shown or after `t_stop`.
+    /// As [`Sim::advance`]; `PastTime` if `t_out` is before the time shown or after `t_stop`; `NotFinite`.
     pub fn advance_dense(&mut self, t_out: R, t_stop: R) -> Result<()> {
         for (what, t) in [("t", t_out), ("t_stop", t_stop)] {
             if !t.is_finite() {
