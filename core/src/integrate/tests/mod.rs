@@ -9,6 +9,7 @@ use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 
 mod accuracy;
+mod clocked;
 mod estimates;
 mod implicit;
 mod robustness;
