@@ -105,6 +105,111 @@ fn a_motion_told_at_a_jump_of_the_command_is_of_the_new_one() {
     }
 }
 
+#[test]
+fn adams_goes_on_from_a_jump_of_the_command_with_the_rate_after_it() {
+    // Forces that are constant between jumps: with the rate before, a step after a jump errs by h² times the jump, and steps would have
+    // to be as short as the root of the tolerance.
+    pushed(adams(1e-10), |sim| {
+        let mut most = 0;
+        for tick in 0..20 {
+            let before = sim.counters().evaluations;
+            command(sim, if tick % 2 == 0 { 0.8 } else { -0.5 });
+            sim.advance(f64::from(tick + 1)).unwrap();
+            most = most.max(sim.counters().evaluations - before);
+        }
+        println!("{most} evaluations");
+        assert!(most < 60, "{most}");
+    });
+}
+
+#[test]
+fn what_is_told_on_arriving_at_a_jump_of_a_table_is_of_before_it() {
+    let growth = [-1.0 / MASSES[0], 1.0 / MASSES[1]];
+    let rows = [(0.0, 0.3), (1.0, 0.3), (1.0, -0.8), (9.0, -0.8)].map(|(t, force)| [t, force, 0.0, 0.0]);
+    let drive = Drive::Torque { torque: Signal::Table(&rows), stiffness: 0.0, damping: 0.0, rest: 0.0, start: START };
+    let links = [one(MASSES[0]), Link { joint: Some(slider(drive)), ..one(MASSES[1]) }];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
+    {
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, method);
+        let mut sim = sim.view();
+        for (until, force) in [(0.9, 0.3), (1.0, 0.3), (1.1, -0.8)] {
+            sim.advance(until).unwrap();
+            let accelerations = vector(&mut sim, |sim, out| sim.accelerations(out));
+            assert_close(&accelerations, &[force * growth[0], 0.0, 0.0, force * growth[1], 0.0, 0.0], 1e-13);
+            let (mut told, mut power) = ([f64::NAN], [f64::NAN]);
+            sim.joint_torques(&mut told, &mut power).unwrap();
+            assert_near(told[0], force, 1e-13);
+        }
+        // Set there by hand, it is of after.
+        let y = sim.state().to_vec();
+        sim.set_state(1.0, &y).unwrap();
+        let accelerations = vector(&mut sim, |sim, out| sim.accelerations(out));
+        assert_near(accelerations[3], -0.8 * growth[1], 1e-13);
+    }
+}
+
+#[test]
+fn a_command_that_tears_a_motion_is_noticed_by_every_method() {
+    // The rate jumps: with a second body the momentum is nobody's, and the motion would take an impulse.
+    let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
+    let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
+    let alone = [one(1.0)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
+    {
+        for torn in [false, true] {
+            let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
+            let mut sim = sim.view();
+            sim.set_channel(0, [0.0, 0.0, 0.1, 0.0], [1.0, 0.1, 0.1, 0.0]).unwrap();
+            sim.advance(0.5).unwrap();
+            assert_eq!(sim.notice(), None, "{method:?}");
+            let rate = if torn { 0.3 } else { 0.1 };
+            sim.set_channel(0, [0.5, 0.05, rate, 0.0], [1.5, 0.05 + rate, rate, 0.0]).unwrap();
+            sim.advance(1.0).unwrap();
+            match sim.notice() {
+                Some((t, e)) => {
+                    assert!(torn, "{method:?}: {t} {e:?}");
+                    assert_near(t, 0.5, 1e-15);
+                    assert_eq!((e.status, e.place), (nekton::Status::DriveUnresolved, nekton::Place::Link(0, 1)));
+                }
+                None => assert!(!torn, "{method:?}: not noticed"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_motion_torn_by_a_piece_given_early_or_not_followed_is_noticed_by_every_method() {
+    let motion = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
+    let push = Drive::Torque { torque: Signal::Channel, stiffness: 1.0, damping: 0.0, rest: 0.0, start: [0.0; 2] };
+    let push = Joint { parent_anchor: [-2.0, 0.0], ..slider(push) };
+    let links = [one(1.0), Link { joint: Some(motion), ..one(1.0) }, Link { joint: Some(push), ..one(1.0) }];
+    let alone = [one(1.0)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
+    {
+        for early in [true, false] {
+            for other in [true, false] {
+                let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
+                let mut sim = sim.view();
+                // Moves from 0.5 s on with the rate 0.1, or until then.
+                let from = if early { 0.5 } else { 0.0 };
+                sim.set_channel(0, [from, 0.0, 0.1, 0.0], [from + 0.5, 0.05, 0.1, 0.0]).unwrap();
+                sim.advance(0.5).unwrap();
+                assert_eq!(sim.notice(), None, "{method:?}");
+                if other {
+                    sim.set_channel(1, [0.5, 0.1, 0.0, 0.0], [2.0, 0.1, 0.0, 0.0]).unwrap();
+                }
+                sim.advance(0.9).unwrap();
+                let (t, e) = sim.notice().unwrap_or_else(|| panic!("{method:?} {early} {other}: not noticed"));
+                assert_near(t, 0.5, 1e-15);
+                assert_eq!((e.status, e.place), (nekton::Status::DriveUnresolved, nekton::Place::Link(0, 1)));
+            }
+        }
+    }
+}
+
 /// Two ellipses in a fluid, hinged, with a spring; `torque` drives the hinge.
 fn hinged_pair(torque: Signal<'_, f64>, method: Method<f64>, look: impl FnOnce(&mut Sim<'_, f64>)) {
     let one = link(nekton::scene::Shape::Ellipse { a: 0.5, b: 0.12 }, 1.0, 24);
@@ -127,6 +232,66 @@ fn the_same_command_again_costs_nothing() {
             println!("{method:?}: {each}");
             assert!(each <= most, "{method:?}: {each}");
         });
+    }
+}
+
+#[test]
+fn a_motion_fed_piece_by_piece_costs_no_more_than_the_same_motion_built_in() {
+    let terms = [nekton::scene::Harmonic { amplitude: 0.2, frequency: 5.0, phase: 0.3, offset: 0.0 }];
+    let one = link(nekton::scene::Shape::Ellipse { a: 0.5, b: 0.12 }, 1.0, 24);
+    let alone = [link(disc(0.4), 1.0, 16)];
+    let row = |t: f64| {
+        let x = 5.0 * t + 0.3;
+        [t, 0.2 * x.sin(), x.cos(), -5.0 * x.sin()]
+    };
+    for (method, most) in [
+        (Method::Rk4 { step: 1e-2 }, 0),
+        (Method::Abm4 { step: 1e-2 }, 3),
+        (Method::Gauss6 { step: 1e-2 }, 250),
+        (adams(1e-8), 40),
+    ] {
+        let mut evaluations = Vec::new();
+        let mut ends = Vec::new();
+        for fed in [false, true] {
+            let signal = if fed { Signal::Channel } else { Signal::Harmonic { terms: &terms, window: None } };
+            let links = [one, hinged(one, 0, [-0.6, 0.0], [0.6, 0.0], Drive::Motion(signal))];
+            let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 2.0, 0.0], [0.0; 3])];
+            let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
+            let mut sim = sim.view();
+            for tick in 0..200 {
+                let (from, to) = (1e-2 * f64::from(tick), 1e-2 * f64::from(tick + 1));
+                if fed {
+                    sim.set_channel(0, row(from), row(to)).unwrap();
+                }
+                sim.advance(to).unwrap();
+                assert_eq!(sim.notice(), None, "{method:?}");
+            }
+            evaluations.push(sim.counters().evaluations);
+            ends.push(sim.state().to_vec());
+        }
+        println!("{method:?}: {evaluations:?}, difference {:e}", difference(&ends[0], &ends[1]));
+        assert_close(&ends[0], &ends[1], 1e-6);
+        assert!(evaluations[1] <= evaluations[0] + most, "{method:?}: {evaluations:?}");
+    }
+}
+
+#[test]
+fn a_piece_given_early_begins_with_a_jump_and_one_that_is_not_followed_ends_with_one() {
+    // Given at 0.3 s: ü = 0.5 from 1 s to 2 s, at rest before and held after. The common centre of mass stays where it was.
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-10)]
+    {
+        let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
+        let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, method);
+        let mut sim = sim.view();
+        sim.advance(0.3).unwrap();
+        sim.set_channel(0, [1.0, 0.0, 0.0, 0.5], [2.0, 0.25, 0.5, 0.5]).unwrap();
+        for (t, u) in [(0.9, 0.0), (1.5, 0.0625), (2.0, 0.25), (2.5, 0.25)] {
+            sim.advance(t).unwrap();
+            assert_near(sim.positions()[0], -u * MASSES[1] / (MASSES[0] + MASSES[1]), 1e-9);
+            assert_eq!(sim.notice(), None);
+        }
     }
 }
 

@@ -55,7 +55,7 @@ pub struct Reference {
     pub until: f64,
     /// Nodes of the link that has most.
     pub nodes: usize,
-    /// Difference from the trajectory with 2/3 of the nodes and twice the tolerance, relative to `travel`.
+    /// Difference from the trajectory with 2/3 of the nodes and ten times the tolerance, relative to `travel`.
     pub error: f64,
     /// What the second opinion says of it.
     pub opinion: Opinion,
@@ -175,8 +175,8 @@ pub fn horizon(bench: &Bench<'_>, wanted: f64, limit: Duration) -> Result<f64, R
     }
 }
 
-/// Raises the nodes until two trajectories agree twenty times better than `goal`, the least error to be told. A horizon that
-/// makes this too slow is shortened.
+/// Raises the nodes, and with them the digits asked of a step, until two trajectories agree twenty times better than `goal`, the least
+/// error to be told. A horizon that makes this too slow is shortened.
 pub fn reference(
     bench: &Bench<'_>,
     wanted: f64,
@@ -195,7 +195,8 @@ pub fn reference(
         let mut before: Option<(Path, usize, f64)> = None;
         for round in 0..ROUNDS {
             tell(&format!("reference: {nodes} nodes to t = {until:.4}"));
-            let run = bench.once(&setting(nodes, tolerance * (2 - round % 2) as f64), until, limit * PATIENCE, 0.0);
+            let tolerance = TOLERANCE.max(tolerance * 0.1_f64.powi(round as i32));
+            let run = bench.once(&setting(nodes, tolerance), until, limit * PATIENCE, 0.0);
             match (run.ended, &before) {
                 (Ended::Failed(e), None) => return Err(e.into()),
                 (Ended::Limit, None) => {

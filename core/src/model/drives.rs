@@ -2,6 +2,8 @@
 //!
 //! Tested by `tests/drives`.
 
+use core::ops::Range;
+
 use crate::base::scalar::Real;
 use crate::base::status::Place;
 use crate::model::signal::{Jump, Seen};
@@ -55,16 +57,21 @@ impl<'a, R: Real> Model<'a, R> {
     }
 
     /// Whether a drive is less smooth at `t`, by so much that it matters to a step of length `h`.
-    pub(crate) fn kinks_at(&self, t: R, h: R, channels: &[R]) -> bool {
-        self.moving().any(|(_, c, motion)| c.signal.kinks_at(motion, t, h, self.store, channels))
+    pub(crate) fn kinks_at(&self, t: R, h: R) -> bool {
+        self.moving().any(|(_, c, motion)| c.signal.kinks_at(motion, t, h, self.store))
     }
 
-    /// The worst that a drive does at a time.
-    pub(crate) fn jump_at(&self, t: R, channels: &[R]) -> (Jump, Option<usize>) {
-        self.moving().fold((Jump::None, None), |(worst, by), (i, c, motion)| {
-            let jump = c.signal.jump_at(motion, t, self.store, channels);
-            if jump > worst { (jump, Some(i)) } else { (worst, by) }
-        })
+    /// The worst that a drive does at a time, but for the ends of channels' pieces.
+    pub(crate) fn jump_at(&self, t: R) -> (Jump, Option<usize>) {
+        let jumps = self.moving().map(|(i, c, motion)| (c.signal.jump_at(motion, t, self.store), Some(i)));
+        jumps.fold((Jump::None, None), |worst, next| if next.0 > worst.0 { next } else { worst })
+    }
+
+    /// The worst that a channel does whose piece begins (row 0) or ends (row 1) at a time, and the coordinate; `None` if none does.
+    pub(crate) fn piece_at(&self, t: R, rows: &Range<usize>, channels: &[R]) -> Option<(Jump, usize)> {
+        self.moving()
+            .filter_map(|(i, c, motion)| Some((c.signal.piece_at(motion, t, rows.clone(), channels)?, i)))
+            .max_by_key(|(jump, _)| *jump)
     }
 
     /// The coordinate that a channel moves, and whether it is a motion.

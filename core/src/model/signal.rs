@@ -2,6 +2,8 @@
 //!
 //! Tested by the tests at its end, `tests/driving`.
 
+use core::ops::Range;
+
 use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
@@ -211,12 +213,19 @@ impl<R: Real> SignalRecord<R> {
         if fastest > R::TAU / R::MAX { R::TAU / fastest } else { R::MAX }
     }
 
-    /// What jumps at a time.
-    pub(crate) fn jump_at(&self, motion: bool, t: R, store: &[R], channels: &[R]) -> Jump {
+    /// What jumps at a time, but for the ends of a channel's piece.
+    pub(crate) fn jump_at(&self, motion: bool, t: R, store: &[R]) -> Jump {
         match self.kind {
-            Kind::Constant(_) | Kind::Harmonic(_) => Jump::None,
-            Kind::Table | Kind::Channel => self.rows(store, channels).jump_at(motion, t),
+            Kind::Constant(_) | Kind::Harmonic(_) | Kind::Channel => Jump::None,
+            Kind::Table => self.rows(store, &[]).jump_at(motion, t),
         }
+    }
+
+    /// What jumps at a time at which a channel's piece begins (row 0) or ends (row 1), unless nothing moves there. Another piece may be
+    /// given there until the next step, hence this is a question of its own.
+    pub(crate) fn piece_at(&self, motion: bool, t: R, rows: Range<usize>, channels: &[R]) -> Option<Jump> {
+        self.channel()?;
+        self.rows(&[], channels).end_at(motion, t, rows)
     }
 
     /// First time strictly within (t, end) at which a table is less smooth than in between.
@@ -227,11 +236,16 @@ impl<R: Real> SignalRecord<R> {
         }
     }
 
-    /// Whether a table is less smooth at `t`, by so much that it matters to a step of length `h`.
-    pub(crate) fn kinks_at(&self, motion: bool, t: R, h: R, store: &[R], channels: &[R]) -> bool {
+    /// Whether a table is less smooth at `t`, by so much that it matters to a step of length `h` that ends there; or whether in that step
+    /// a window began to rise or fall: infinitely smooth, but no past tells of it.
+    pub(crate) fn kinks_at(&self, motion: bool, t: R, h: R, store: &[R]) -> bool {
         match self.kind {
-            Kind::Constant(_) | Kind::Harmonic(_) => false,
-            Kind::Table | Kind::Channel => self.rows(store, channels).kinks_at(motion, t, h),
+            Kind::Constant(_) | Kind::Harmonic(None) | Kind::Channel => false,
+            Kind::Harmonic(Some(w)) => {
+                let began = |edge: R| (t - edge) * (edge - (t - h)) >= R::zero();
+                began(w.from) || began(w.to - w.ramp)
+            }
+            Kind::Table => self.rows(store, &[]).kinks_at(motion, t, h),
         }
     }
 

@@ -3,6 +3,8 @@
 //!
 //! Tested by the tests at its end, `tests/channels`, `tests/drives`.
 
+use core::ops::Range;
+
 use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::model::signal::{Jump, Moment, Seen};
@@ -205,6 +207,13 @@ impl<R: Real> Rows<'_, R> {
     /// What jumps at a time.
     pub(super) fn jump_at(&self, motion: bool, t: R) -> Jump {
         self.row_at(t).map_or(Jump::None, |k| self.jump_of(motion, k))
+    }
+
+    /// What jumps at a time if one of these rows, the first or the last, is there, unless nothing moves.
+    pub(super) fn end_at(&self, motion: bool, t: R, rows: Range<usize>) -> Option<Jump> {
+        let k = self.row_at(t).filter(|k| rows.contains(k))?;
+        let jump = self.jump_of(motion, k);
+        (jump != Jump::None || self.matters(motion, k, R::zero())).then_some(jump)
     }
 
     /// First jump strictly within (t, end). O(rows in between).

@@ -2,6 +2,8 @@
 //!
 //! Tested by `tests/drives`, `tests/channels`.
 
+use core::ops::Range;
+
 use crate::base::scalar::Real;
 use crate::model::Formulation;
 use crate::model::signal::{Jump, Seen};
@@ -43,7 +45,7 @@ impl<R: Real> Sim<'_, R> {
             }
         }
         if moved {
-            let (jump, by) = model.jump_at(t, channels);
+            let (jump, by) = model.jump_at(t);
             note(R::zero(), by.filter(|_| self.tears(jump)));
         }
         note(R::zero(), self.progress.torn.take());
@@ -56,24 +58,54 @@ impl<R: Real> Sim<'_, R> {
         jump == Jump::Value || (jump == Jump::Rate && !locked)
     }
 
+    /// A step begins at `t`: pieces of channels that end there, or begin there and were given before, may jump.
+    pub(crate) fn meet_channels(&mut self, t: R) {
+        if self.model.head.channels > 0 {
+            let rows = if self.progress.commanded == t { 1..2 } else { 0..2 };
+            self.meet_pieces(t, &rows);
+        }
+    }
+
+    /// A channel is about to be set at the present time: from now on a piece that begins there counts as set there.
+    pub(crate) fn before_command(&mut self) {
+        let t = self.progress.time;
+        if self.progress.commanded != t {
+            self.meet_pieces(t, &(0..1));
+            self.progress.commanded = t;
+        }
+    }
+
+    fn meet_pieces(&mut self, t: R, rows: &Range<usize>) {
+        match self.model.piece_at(t, rows, self.evaluation.coordinates.channels) {
+            Some((Jump::None, _)) => self.progress.adams.kink(),
+            Some((jump, coordinate)) => self.meet_jump(jump, coordinate),
+            None => {}
+        }
+    }
+
+    fn meet_jump(&mut self, jump: Jump, coordinate: usize) {
+        if self.tears(jump) && self.progress.watch != Watch::Nothing {
+            self.progress.torn = Some(coordinate);
+        }
+        self.progress.adams.jump();
+        self.forget_rates();
+    }
+
     /// A channel was set anew: the integrator follows.
     pub(crate) fn follow_channel(&mut self, channel: usize, old: &[R], new: &[R]) {
         let t = self.progress.time;
         let Some((coordinate, motion)) = self.model.channel(channel) else { return };
         let jump = channel_jump(motion, t, old, new);
-        if self.tears(jump) && self.progress.watch != Watch::Nothing {
-            self.progress.torn = Some(coordinate);
+        // What is found out now of the last step is not of the call that made it.
+        if jump != Jump::None {
+            self.begin_watch();
+            self.meet_jump(jump, coordinate);
+        } else if channel_kink(motion, t, old, new) {
+            self.progress.adams.kink();
         }
         if self.progress.runs() && self.progress.adams.time() > t {
             // It has looked ahead.
             self.restart();
-        } else if jump != Jump::None {
-            // What is found out now of the last step is not of the call that made it.
-            self.begin_watch();
-            self.progress.adams.jump();
-            self.forget_rates();
-        } else if channel_kink(motion, t, old, new) {
-            self.progress.adams.kink();
         }
     }
 }

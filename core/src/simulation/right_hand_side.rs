@@ -101,11 +101,11 @@ impl<R: Real> System<R> for RightHandSide<'_, '_, R> {
     }
 
     fn kinks_at(&self, t: R, h: R) -> bool {
-        self.model.kinks_at(t, h, self.evaluation.coordinates.channels)
+        self.model.kinks_at(t, h)
     }
 
     fn jumps_at(&self, t: R) -> bool {
-        self.model.jump_at(t, self.evaluation.coordinates.channels).0 != Jump::None
+        self.model.jump_at(t).0 != Jump::None
     }
 
     /// The reach of the link that a coordinate moves, or a radian; for a rate that it covers within the step.

@@ -153,6 +153,7 @@ impl<R: Real> Progress<R> {
             torn,
             balance,
             arrived,
+            commanded,
         } = self;
         each_of_method(method, io);
         io.finite("time", time);
@@ -183,6 +184,7 @@ impl<R: Real> Progress<R> {
         *torn = torn_any.then_some(torn_which);
         each_of_balance(balance, io);
         io.flag("arrived", arrived);
+        io.real("commanded", commanded);
         let mut which = match watch {
             Watch::Nothing => 0,
             Watch::Past => 1,

@@ -127,6 +127,7 @@ impl<'a, R: Real> Sim<'a, R> {
             missed: Missed::nothing(),
             torn: None,
             arrived: false,
+            commanded: R::NAN,
             balance: Balance::unknown(),
         };
         progress.set_clock();
@@ -315,6 +316,7 @@ impl<'a, R: Real> Sim<'a, R> {
             return Err(e);
         }
         self.progress.watch = Watch::Nothing;
+        self.progress.commanded = R::NAN;
         (self.progress.missed, self.progress.torn, self.progress.balance) =
             (Missed::nothing(), None, Balance::unknown());
         self.restart();
@@ -348,6 +350,7 @@ impl<'a, R: Real> Sim<'a, R> {
         if old == new {
             return Ok(());
         }
+        self.before_command();
         copy(part_mut(self.state.commands, channel * CHANNEL_LEN, CHANNEL_LEN), &new);
         copy(self.evaluation.coordinates.channels, self.state.commands);
         (self.evaluation.kept.shown, self.progress.arrived) = (false, false);

@@ -83,6 +83,8 @@ pub(crate) struct Progress<R> {
     pub(crate) torn: Option<usize>,
     /// A step has led to the state shown: what jumps there is shown as it was before.
     pub(crate) arrived: bool,
+    /// When a channel was last set; NaN before. Pieces of channels that begin then did not hold still before.
+    pub(crate) commanded: R,
     /// What the balance of energy is held against.
     pub(crate) balance: Balance<R>,
 }

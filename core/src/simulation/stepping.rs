@@ -150,6 +150,7 @@ impl<R: Real> Sim<'_, R> {
     fn fixed_step(&mut self, h: R, regular: bool) -> Result<()> {
         copy(self.state.saved, self.state.y);
         let (t, moved) = (self.progress.time, self.progress.watch != Watch::Nothing);
+        self.meet_channels(t);
         if !regular {
             self.forget_rates();
         }
@@ -201,7 +202,7 @@ impl<R: Real> Sim<'_, R> {
                 self.progress.set_clock();
             }
         }
-        if self.model.jump_at(next, self.evaluation.coordinates.channels).0 != Jump::None {
+        if self.model.jump_at(next).0 != Jump::None {
             self.forget_rates();
         }
         Ok(())
@@ -224,7 +225,11 @@ impl<R: Real> Sim<'_, R> {
 
     /// One accepted step of the variable-step method.
     fn adams_step(&mut self, t_stop: R) -> Result<()> {
-        let (mut adams, moved) = (self.progress.adams, self.progress.watch != Watch::Nothing);
+        let moved = self.progress.watch != Watch::Nothing;
+        if self.progress.runs() {
+            self.meet_channels(self.progress.adams.time());
+        }
+        let mut adams = self.progress.adams;
         if !self.progress.runs() {
             adams.start(self.progress.time, self.state.y, self.state.integrator)?;
             self.progress.clock = Clock::Running;

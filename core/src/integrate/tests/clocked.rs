@@ -89,7 +89,10 @@ fn adams_sees_a_pulse_behind_a_long_rest() {
                 let error = (y - 0.375).abs() / tolerance;
                 // The digits of the time are what is left of those of the pulse.
                 let digits = 10.0 * f64::EPSILON * rest / width / tolerance;
-                std::println!("{width} {rest} {tolerance:e}: {error:.2} tolerances, {} evaluations", system.evaluations);
+                std::println!(
+                    "{width} {rest} {tolerance:e}: {error:.2} tolerances, {} evaluations",
+                    system.evaluations
+                );
                 assert!(error < 5.0 + digits, "{width} {rest} {tolerance:e}: {error} tolerances");
             }
         }
