@@ -199,7 +199,14 @@ impl SceneFile {
             }
         };
         // The gap of boundaries that touch is rounding only, and a limit of steps is told already.
-        let told = matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps);
+        let told =
+            matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps | Status::DriveUnresolved);
+        if error.status == Status::DriveUnresolved {
+            text = match error.value {
+                0.0 => format!("{text} (its position or speed jumps, which would take an impulse)"),
+                step => format!("{text} (it takes steps of {step:.3e} s or less)"),
+            };
+        }
         if !error.what.is_empty() && !told {
             let size = error.value.abs();
             let value = if size == 0.0 || (1e-3..1e6).contains(&size) {

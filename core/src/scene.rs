@@ -283,7 +283,7 @@ pub struct Window<R> {
     pub from: R,
     /// End of the support.
     pub to: R,
-    /// Length of each ramp, > 0, at most half the support.
+    /// Length of each ramp, at most half the support; more than 64 roundings of the times.
     pub ramp: R,
 }
 

@@ -69,7 +69,9 @@ impl<R: Real> Sim<'_, R> {
         let mut left = self.progress.step_limit;
         match self.progress.method {
             Method::Adams { .. } => {
-                while !self.progress.runs() || self.progress.adams.time() < t_out {
+                // Where it is the same time but for rounding, no step is made: drives that end there would be held.
+                let near = t_out - R::lit(4.0) * R::EPSILON * t_out.abs();
+                while !self.progress.runs() || self.progress.adams.time() < near {
                     if let Err(e) = self.spend(&mut left).and_then(|()| self.adams_step(t_stop)) {
                         if self.progress.runs() && self.progress.adams.time() > self.progress.time {
                             self.show_adams(self.progress.adams.time())?;
