@@ -4,7 +4,7 @@
 mod common;
 use common::{GOOD, Place, changed, names};
 
-use std::fs::{File, OpenOptions};
+use std::fs::OpenOptions;
 use std::os::unix::fs::symlink;
 use std::process::{Command, Stdio};
 
@@ -63,7 +63,6 @@ fn a_bad_folder_is_found_before_the_run_and_nothing_is_left() {
         (&deep, &format!("{deep}: cannot be written: File name too long")),
         ("file", "file: is not a folder"),
         ("file/more", "file/more: cannot be written: Not a directory"),
-        ("", ": is no name for a new folder"),
         ("new/..", "new/..: is no name for a new folder"),
     ] {
         for arguments in [["run", "scene.toml", "--out", out], ["trade", "scene.toml", "--out", out]] {
@@ -125,20 +124,25 @@ fn drawn(page: &str) -> Option<(usize, Vec<String>)> {
 
 #[test]
 fn reports_are_drawn_at_any_offset() {
-    for (offset, names) in
-        [("0.0", None), ("3.0", None), ("1e6", Some("1e6")), ("-1e12", Some("-1e12")), ("1e17", Some("1e17"))]
-    {
+    let at = |offset: &str| {
         let text = changed("position = [0.0, 0.0]", &format!("position = [{offset}, 0.0]"));
-        let text = text.replace("position = [0.0, 3.0]", &format!("position = [{offset}, 3.0]"));
+        text.replace("position = [0.0, 3.0]", &format!("position = [{offset}, 3.0]"))
+    };
+    // A path so long that no point is near all of it.
+    let far = "[fluid]\ndensity = 0.0\n[[body]]\nroot = { x = { table = \"way.csv\" } }\n[[body.link]]\n\
+               shape = { ellipse = [10, 5] }\ndensity = 1\n[run]\nduration = 1.0\n";
+    for (offset, names, text) in [
+        ("0.0", None, at("0.0")),
+        ("3.0", None, at("3.0")),
+        ("1e6", Some("1e6"), at("1e6")),
+        ("-1e12", Some("-1e12"), at("-1e12")),
+        ("1e17", Some("1e17"), at("1e17")),
+        ("far", None, far.to_owned()),
+    ] {
         let place = Place::new(&text);
-        let clock = std::time::Instant::now();
+        place.put("way.csv", "t,u\n0,-1e17\n1,1e17\n");
         let done = place.run();
-        assert!(clock.elapsed().as_secs() < 60);
-        if done.code == Some(2) {
-            // So far away that the core refuses it; the plots have a test of their own.
-            eprintln!("{offset}: {}", done.err);
-            continue;
-        }
+        assert!(matches!(done.code, Some(0 | 3)), "{offset}: {}", done.err);
         let report = place.read("results/report.html");
         assert!(!report.contains("NaN") || report.contains("(NaN"), "{offset}");
         let svg = place.read("results/trajectories.svg");
@@ -149,7 +153,7 @@ fn reports_are_drawn_at_any_offset() {
             assert!(report.contains("\"origin\":null"), "{offset}");
         }
         if let Some((lines, texts)) = drawn(&report) {
-            assert!((10..200).contains(&lines), "{offset}: {lines}");
+            assert!((6..200).contains(&lines), "{offset}: {lines}");
             let told = texts.iter().any(|t| t.starts_with("from x = "));
             assert_eq!(told, names.is_some(), "{texts:?}");
         }

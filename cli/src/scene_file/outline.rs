@@ -90,14 +90,12 @@ fn read(path: &Path, bytes: &[u8]) -> Outcome<(Vec<[f64; 2]>, String)> {
     let mut rows: Vec<Point> =
         sheet.rows.iter().map(|r| Point { line: r.line, at: columns.map(|c| r.cells[c]), apart: r.apart }).collect();
     several(path, &rows)?;
-    let parts = match counts(path, &rows)? {
-        Some(parts) => {
-            rows.remove(0);
-            kind.push("upper and lower surface, joined".to_owned());
-            Some(parts)
-        }
-        None => blocks(&rows),
-    };
+    let counted = counts(path, &rows)?;
+    if counted.is_some() {
+        rows.remove(0);
+    }
+    let parts = counted.or_else(|| blocks(&rows));
+    kind.extend(parts.map(|_| "upper and lower surface, joined".to_owned()));
     let points = match parts {
         Some(first) => join(path, &rows, first)?,
         None => rows.iter().map(|p| p.at).collect(),

@@ -143,11 +143,15 @@ fn row(line: &str, separator: Separator) -> Option<(&str, Vec<f64>)> {
 
 /// Whether a line before the first numbers looks like numbers with a mistake rather than like a name or a head.
 fn spoilt(cells: &[&str], separator: Separator) -> bool {
-    let letters = |c: &&str| c.as_bytes().windows(2).any(|w| w.iter().all(u8::is_ascii_alphabetic));
-    let digits = |c: &&str| c.contains(|d: char| d.is_ascii_digit());
-    let pointed = |c: &&str| digits(c) && c.contains(['.', ',']);
+    let nearly = |c: &&str| {
+        let letters = c.chars().filter(|l| l.is_alphabetic()).count();
+        letters < 2 && c.chars().all(|l| l.is_alphanumeric() || "+-.,".contains(l))
+    };
+    let pointed = |c: &&str| c.contains(['.', ',']) && c.contains(|d: char| d.is_ascii_digit());
     let first = cells.first().is_some_and(|c| number(c, separator).is_some());
-    cells.len() > 1 && cells.iter().any(digits) && !cells.iter().any(letters) && (first || cells.iter().any(pointed))
+    // A name may well begin with a number, but hardly one that a comma follows.
+    let parted = first && !matches!(separator, Blanks | BlanksAndCommas);
+    cells.len() > 1 && (parted || (cells.iter().all(nearly) && (first || cells.iter().any(pointed))))
 }
 
 /// Reads the lines of a file. O(bytes).

@@ -38,6 +38,8 @@ fn outlines_are_read_however_they_are_written() {
         (b"4\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (with their number)"),
         (b"NACA 0012\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (`NACA 0012`)"),
         (b"G\xf6ttingen 11.7%\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (`G\u{fffd}ttingen 11.7%`)"),
+        (b"E63 (4.25%)\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (`E63 (4.25%)`)"),
+        (b"8 percent, E 387 of 2\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (`8 percent, E 387 of 2`)"),
         (b"Clark Y\nx/c  y/c\n0 0.5\n1 0.25\n1.5 1\n-0.5 0.75\n", " (`Clark Y`)"),
         (b"x,z\n0,0.5\n1,0.25\n1.5,1\n-0.5,0.75\n", " (`x,z`)"),
         (b"y,x\n0.5,0\n0.25,1\n1,1.5\n0.75,-0.5\n", " (x and y from columns 2 and 1)"),
@@ -60,6 +62,7 @@ fn what_is_no_outline_is_refused_with_file_line_and_text() {
         ("\n1\n2\n3\n", "o.csv:2: no line of the file has two numbers; here is `1`"),
         ("x,y\n0,0\n1,O\n1,1\n", "o.csv:3: `O` in `1,O` is not a number (each point is two numbers"),
         ("0,O\n1,0\n1,1\n0,1\n", "o.csv:1: `O` in `0,O` is not a number"),
+        ("1,oops\n1,0\n1,1\n0,1\n", "o.csv:1: `oops` in `1,oops` is not a number"),
         ("l.0 0.0\n1 1\n0 1\n0 0\n", "o.csv:1: `l.0` in `l.0 0.0` is not a number"),
         ("x,y\nnan,0\n1,0\n1,1\n", "o.csv:2: `nan` is not a finite number"),
         ("x,y\n0,0\n1e999,0\n1,1\n", "o.csv:3: `1e999` is not a finite number"),
@@ -94,7 +97,7 @@ fn what_is_no_outline_is_refused_with_file_line_and_text() {
         let done = reads(text);
         assert!(done.as_ref().is_err_and(|e| e.starts_with(told)), "{text}\n{done:?}");
     }
-    let many: String = (0..100_001).map(|k| format!("{k},{}\n", k * k)).collect();
+    let many: String = (0..100_001_i64).map(|k| format!("{k},{}\n", k * k)).collect();
     let told = "o.csv: has 100001 points; at most 100000 are taken (every 2th of them would do)";
     assert_eq!(reads(many).unwrap_err(), told);
 }
@@ -109,7 +112,7 @@ fn lednicer_s_surfaces_become_one_line_in_selig_s_order() {
     }
     // Without counts: two blocks, both from the nose.
     let blocks = "s 1\n0 0\n0.5 0.1\n1 0.01\n\n0 0\n.5 -.1\n1 -.01\n";
-    assert_eq!(reads(blocks).map(|r| r.0), Ok(around.clone()));
+    assert_eq!(reads(blocks), Ok((around.clone(), joined("`s 1`, "))));
     // Noses that differ both stay, and so do tails that do not.
     let text = "s 1\n3 3\n0 .001\n.5 .1\n1 0\n\n0 -.001\n.5 -.1\n1 0\n";
     let apart = vec![[1.0, 0.0], [0.5, 0.1], [0.0, 0.001], [0.0, -0.001], [0.5, -0.1], [1.0, 0.0]];
