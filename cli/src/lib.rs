@@ -28,7 +28,8 @@ use ending::{Ending, spoken};
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  2  bad input: one line on standard error names file, line and a way out; nothing was written
+  2  bad input: one line on standard error names file, line and a way out; nothing was written. Or standard output could not be
+     written (a reader that has gone away is no error); results of a run are there then
   3  the run stopped before its end (contact, a singular matrix, a tolerance that cannot be met, SIGINT, SIGTERM); the results up to
      then were written, and report.html says why it stopped";
 

@@ -148,10 +148,13 @@ fn spoilt(cells: &[&str], separator: Separator) -> bool {
         letters < 2 && c.chars().all(|l| l.is_alphanumeric() || "+-.,".contains(l))
     };
     let pointed = |c: &&str| c.contains(['.', ',']) && c.contains(|d: char| d.is_ascii_digit());
-    let first = cells.first().is_some_and(|c| number(c, separator).is_some());
-    // A name may well begin with a number, but hardly one that a comma follows.
-    let parted = first && !matches!(separator, Blanks | BlanksAndCommas);
-    cells.len() > 1 && (parted || (cells.iter().all(nearly) && (first || cells.iter().any(pointed))))
+    let is_number = |c: &&str| number(c, separator).is_some();
+    let first = cells.first().is_some_and(is_number);
+    let near = cells.iter().all(nearly) && (first || cells.iter().any(pointed));
+    // A name may well begin with a number or be a letter and one, but hardly with a comma between.
+    let begun = cells.first().is_some_and(|c| c.starts_with(|d: char| d.is_ascii_digit() || "+-.".contains(d)));
+    let parted = begun || (cells.iter().all(nearly) && cells.iter().any(is_number));
+    cells.len() > 1 && (near || (parted && !matches!(separator, Blanks | BlanksAndCommas)))
 }
 
 /// Reads the lines of a file. O(bytes).

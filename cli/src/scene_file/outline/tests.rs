@@ -62,6 +62,9 @@ fn what_is_no_outline_is_refused_with_file_line_and_text() {
         ("\n1\n2\n3\n", "o.csv:2: no line of the file has two numbers; here is `1`"),
         ("x,y\n0,0\n1,O\n1,1\n", "o.csv:3: `O` in `1,O` is not a number (each point is two numbers"),
         ("0,O\n1,0\n1,1\n0,1\n", "o.csv:1: `O` in `0,O` is not a number"),
+        ("O,1\n1,0\n1,1\n0,1\n", "o.csv:1: `O` in `O,1` is not a number"),
+        ("1 000,5;0\n0;0\n1;1\n2;1\n", "o.csv:1: `1 000,5` in `1 000,5;0` is not a number"),
+        ("0.5 mm,0\n1,0\n1,1\n0,1\n", "o.csv:1: `0.5 mm` in `0.5 mm,0` is not a number"),
         ("1,oops\n1,0\n1,1\n0,1\n", "o.csv:1: `oops` in `1,oops` is not a number"),
         ("l.0 0.0\n1 1\n0 1\n0 0\n", "o.csv:1: `l.0` in `l.0 0.0` is not a number"),
         ("x,y\nnan,0\n1,0\n1,1\n", "o.csv:2: `nan` is not a finite number"),
@@ -152,6 +155,35 @@ fn points_written_in_any_way_come_back_to_the_last_bit() {
                     let head = if head.starts_with('#') { "# x\n" } else { head }.replace(',', separator);
                     let rows = points.iter().map(|p| format!("{}{separator}{}\n", number(p[0]), number(p[1])));
                     let text = format!("{head}{}", rows.collect::<String>()).replace('\n', end);
+                    assert_eq!(reads(&text).map(|r| r.0), Ok(points.clone()), "{text}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn sections_written_as_selig_and_lednicer_do_come_back_to_the_last_bit() {
+    for (name, tail) in [("0012", Tail::Blunt), ("2412", Tail::Sharp), ("6716", Tail::Blunt), ("23012", Tail::Sharp)] {
+        for count in [21, 41, 161] {
+            let mut points = Naca::new(name, tail).unwrap().outline(1.0, count).unwrap();
+            if tail == Tail::Sharp {
+                // As such files have it.
+                points.push(points[0]);
+            }
+            let nose = points.iter().position(|p| *p == [0.0; 2]).unwrap();
+            let rows = |points: &mut dyn Iterator<Item = &[f64; 2]>, separator: &str| -> String {
+                points.map(|p| format!("  {:?}{separator}{:?}\n", p[0], p[1])).collect()
+            };
+            for separator in ["  ", "\t"] {
+                let selig = format!("NACA {name}\n{}", rows(&mut points.iter(), separator));
+                assert_eq!(reads(selig).map(|r| r.0), Ok(points.clone()));
+                let (upper, lower) = (&points[..=nose], &points[nose..]);
+                let [a, b] = [upper, lower].map(<[_]>::len);
+                let surfaces =
+                    [rows(&mut upper.iter().rev(), separator), rows(&mut lower.iter(), separator)].join("\n");
+                for counts in [format!("{a}. {b}.\n\n"), format!("\t{a}\t{b}\n"), "\n".to_owned()] {
+                    let text = format!("NACA {name}\n{counts}{surfaces}");
                     assert_eq!(reads(&text).map(|r| r.0), Ok(points.clone()), "{text}");
                 }
             }
