@@ -2,6 +2,8 @@
 
 mod body;
 mod channels;
+mod file;
+mod outline;
 mod range;
 mod reader;
 mod run;
@@ -86,6 +88,14 @@ impl SceneFile {
     /// What the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
+    }
+
+    /// Outlines whose points are not in the scene file: whose they are, and what was read.
+    pub fn outlines(&self) -> Vec<(String, String)> {
+        let links = self.labels().into_iter().zip(self.bodies.iter().flat_map(|b| &b.links).map(|l| &l.shape));
+        let tank = self.tank.iter().map(|t| ("tank".to_owned(), &t.shape));
+        let walls = self.obstacles.iter().enumerate().map(|(k, o)| (format!("obstacle {}", k + 1), &o.shape));
+        links.chain(tank).chain(walls).filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
     }
 
     /// The text of the file.
