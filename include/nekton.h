@@ -357,7 +357,7 @@ typedef struct nekton_window {
     double from;
     /** End of the support, s. */
     double to;
-    /** Length of each ramp, s, at most half the support; all three 0: no window. */
+    /** Length of each ramp, s, at most half the support, more than 64 roundings of the times; all three 0: no window. */
     double ramp;
 } nekton_window;
 

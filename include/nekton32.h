@@ -78,7 +78,7 @@ typedef struct nekton32_window {
     float from;
     /** End of the support, s. */
     float to;
-    /** Length of each ramp, s, at most half the support; all three 0: no window. */
+    /** Length of each ramp, s, at most half the support, more than 64 roundings of the times; all three 0: no window. */
     float ramp;
 } nekton32_window;
 

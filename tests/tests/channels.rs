@@ -26,6 +26,20 @@ fn pushed(method: Method<f64>, look: impl FnOnce(&mut Sim<'_, f64>)) {
     look(&mut simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, method).view());
 }
 
+/// The same, moved by a channel in a fluid, beside a third disc.
+fn moved_beside_another(method: Method<f64>, look: impl FnOnce(&mut Sim<'_, f64>)) {
+    let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
+    let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
+    let alone = [one(1.0)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
+    look(&mut simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method).view());
+}
+
+fn every_method(tolerance: f64) -> [Method<f64>; 4] {
+    let step = 0.05;
+    [Method::Rk4 { step }, Method::Abm4 { step }, Method::Gauss6 { step }, adams(tolerance)]
+}
+
 fn joint(sim: &Sim<'_, f64>) -> [f64; 2] {
     let (mut u, mut du) = ([f64::NAN], [f64::NAN]);
     sim.joint_values(&mut u, &mut du);
@@ -44,9 +58,7 @@ fn motion_after_a_jump_of_the_command_is_the_parabola_of_the_new_one() {
         [u + du * t + 0.5 * a * t * t, du + a * t]
     };
     // Every method is exact for parabolas, unless it looks back, or has looked ahead, across a jump.
-    let step = 0.05;
-    let methods = [Method::Rk4 { step }, Method::Abm4 { step }, Method::Gauss6 { step }, adams(1e-10)];
-    for method in methods {
+    for method in every_method(1e-10) {
         for dense in [false, true] {
             pushed(method, |sim| {
                 let mut exact = START;
@@ -129,8 +141,7 @@ fn what_is_told_on_arriving_at_a_jump_of_a_table_is_of_before_it() {
     let drive = Drive::Torque { torque: Signal::Table(&rows), stiffness: 0.0, damping: 0.0, rest: 0.0, start: START };
     let links = [one(MASSES[0]), Link { joint: Some(slider(drive)), ..one(MASSES[1]) }];
     let bodies = [body(&links, [0.0; 3], [0.0; 3])];
-    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
-    {
+    for method in every_method(1e-9) {
         let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, method);
         let mut sim = sim.view();
         for (until, force) in [(0.9, 0.3), (1.0, 0.3), (1.1, -0.8)] {
@@ -152,29 +163,24 @@ fn what_is_told_on_arriving_at_a_jump_of_a_table_is_of_before_it() {
 #[test]
 fn a_command_that_tears_a_motion_is_noticed_by_every_method() {
     // The rate jumps: with a second body the momentum is nobody's, and the motion would take an impulse.
-    let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
-    let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
-    let alone = [one(1.0)];
-    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
-    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
-    {
+    for method in every_method(1e-9) {
         for torn in [false, true] {
-            let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
-            let mut sim = sim.view();
-            sim.set_channel(0, [0.0, 0.0, 0.1, 0.0], [1.0, 0.1, 0.1, 0.0]).unwrap();
-            sim.advance(0.5).unwrap();
-            assert_eq!(sim.notice(), None, "{method:?}");
-            let rate = if torn { 0.3 } else { 0.1 };
-            sim.set_channel(0, [0.5, 0.05, rate, 0.0], [1.5, 0.05 + rate, rate, 0.0]).unwrap();
-            sim.advance(1.0).unwrap();
-            match sim.notice() {
-                Some((t, e)) => {
-                    assert!(torn, "{method:?}: {t} {e:?}");
-                    assert_near(t, 0.5, 1e-15);
-                    assert_eq!((e.status, e.place), (nekton::Status::DriveUnresolved, nekton::Place::Link(0, 1)));
+            moved_beside_another(method, |sim| {
+                sim.set_channel(0, [0.0, 0.0, 0.1, 0.0], [1.0, 0.1, 0.1, 0.0]).unwrap();
+                sim.advance(0.5).unwrap();
+                assert_eq!(sim.notice(), None, "{method:?}");
+                let rate = if torn { 0.3 } else { 0.1 };
+                sim.set_channel(0, [0.5, 0.05, rate, 0.0], [1.5, 0.05 + rate, rate, 0.0]).unwrap();
+                sim.advance(1.0).unwrap();
+                match sim.notice() {
+                    Some((t, e)) => {
+                        assert!(torn, "{method:?}: {t} {e:?}");
+                        assert_near(t, 0.5, 1e-15);
+                        assert_eq!((e.status, e.place), (nekton::Status::DriveUnresolved, nekton::Place::Link(0, 1)));
+                    }
+                    None => assert!(!torn, "{method:?}: not noticed"),
                 }
-                None => assert!(!torn, "{method:?}: not noticed"),
-            }
+            });
         }
     }
 }
@@ -187,8 +193,7 @@ fn a_motion_torn_by_a_piece_given_early_or_not_followed_is_noticed_by_every_meth
     let links = [one(1.0), Link { joint: Some(motion), ..one(1.0) }, Link { joint: Some(push), ..one(1.0) }];
     let alone = [one(1.0)];
     let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
-    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
-    {
+    for method in every_method(1e-9) {
         for early in [true, false] {
             for other in [true, false] {
                 let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
@@ -212,26 +217,21 @@ fn a_motion_torn_by_a_piece_given_early_or_not_followed_is_noticed_by_every_meth
 
 #[test]
 fn pieces_that_meet_but_for_the_last_digit_of_the_time_continue_each_other() {
-    let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
-    let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
-    let alone = [one(1.0)];
-    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
     let row = |t: f64| [t, 0.1 * t + 0.02 * (3.0 * t).sin(), 0.1 + 0.06 * (3.0 * t).cos(), -0.18 * (3.0 * t).sin()];
-    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
-    {
+    for method in every_method(1e-9) {
         for dense in [false, true] {
-            let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
-            let mut sim = sim.view();
-            for tick in 0..60 {
-                let (from, to) = (0.05 * f64::from(tick), 0.05 * f64::from(tick) + 0.05);
-                // The energy before the first command is not held against what follows.
-                let drift = sim.energy_drift().unwrap();
-                assert!(drift.amount.abs() <= 1e-3 * drift.kinetic, "{method:?} {dense} {tick}: {drift:?}");
-                sim.set_channel(0, row(from), row(to)).unwrap();
-                let t = 0.05 * f64::from(tick + 1);
-                if dense { sim.advance_dense(t, 10.0) } else { sim.advance(t) }.unwrap();
-                assert_eq!(sim.notice(), None, "{method:?} {dense} {tick}");
-            }
+            moved_beside_another(method, |sim| {
+                for tick in 0..60 {
+                    let (from, to) = (0.05 * f64::from(tick), 0.05 * f64::from(tick) + 0.05);
+                    // The energy before the first command is not held against what follows.
+                    let drift = sim.energy_drift().unwrap();
+                    assert!(drift.amount.abs() <= 1e-3 * drift.kinetic, "{method:?} {dense} {tick}: {drift:?}");
+                    sim.set_channel(0, row(from), row(to)).unwrap();
+                    let t = 0.05 * f64::from(tick + 1);
+                    if dense { sim.advance_dense(t, 10.0) } else { sim.advance(t) }.unwrap();
+                    assert_eq!(sim.notice(), None, "{method:?} {dense} {tick}");
+                }
+            });
         }
     }
 }
@@ -304,8 +304,7 @@ fn a_motion_fed_piece_by_piece_costs_no_more_than_the_same_motion_built_in() {
 #[test]
 fn a_piece_given_early_begins_with_a_jump_and_one_that_is_not_followed_ends_with_one() {
     // Given at 0.3 s: ü = 0.5 from 1 s to 2 s, at rest before and held after. The common centre of mass stays where it was.
-    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-10)]
-    {
+    for method in every_method(1e-10) {
         let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
         let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
         let bodies = [body(&links, [0.0; 3], [0.0; 3])];

@@ -68,7 +68,7 @@ impl<'a, R: Real> Model<'a, R> {
     }
 
     /// The worst that a channel does whose piece begins (row 0) or ends (row 1) at a time, and the coordinate; `None` if none does.
-    pub(crate) fn piece_at(&self, t: R, rows: &Range<usize>, channels: &[R]) -> Option<(Jump, usize)> {
+    pub(crate) fn piece_at(&self, t: R, rows: Range<usize>, channels: &[R]) -> Option<(Jump, usize)> {
         self.moving()
             .filter_map(|(i, c, motion)| Some((c.signal.piece_at(motion, t, rows.clone(), channels)?, i)))
             .max_by_key(|(jump, _)| *jump)

@@ -64,7 +64,7 @@ impl<R: Real> Sim<'_, R> {
             // The integrator's time and the one shown may differ by rounding.
             let now = (self.progress.commanded - t).abs() <= R::lit(4.0) * R::EPSILON * t.abs();
             let rows = if now { 1..2 } else { 0..2 };
-            self.meet_pieces(t, &rows);
+            self.meet_pieces(t, rows);
         }
     }
 
@@ -72,12 +72,12 @@ impl<R: Real> Sim<'_, R> {
     pub(crate) fn before_command(&mut self) {
         let t = self.progress.time;
         if self.progress.commanded != t {
-            self.meet_pieces(t, &(0..1));
+            self.meet_pieces(t, 0..1);
             self.progress.commanded = t;
         }
     }
 
-    fn meet_pieces(&mut self, t: R, rows: &Range<usize>) {
+    fn meet_pieces(&mut self, t: R, rows: Range<usize>) {
         match self.model.piece_at(t, rows, self.evaluation.coordinates.channels) {
             Some((Jump::None, _)) => self.progress.adams.kink(),
             Some((jump, coordinate)) => self.meet_jump(jump, coordinate),

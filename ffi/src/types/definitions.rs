@@ -76,7 +76,7 @@ pub struct WindowDef<R> {
     pub from: R,
     /// End of the support, s.
     pub to: R,
-    /// Length of each ramp, s, at most half the support; all three 0: no window.
+    /// Length of each ramp, s, at most half the support, more than 64 roundings of the times; all three 0: no window.
     pub ramp: R,
 }
 
