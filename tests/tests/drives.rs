@@ -316,8 +316,9 @@ fn times_in_the_past_and_too_many_steps_are_refused_with_both_numbers() {
 #[test]
 fn random_drives_are_right_to_a_hundred_tolerances_or_noticed() {
     let mut worst = 0.0_f64;
-    // The last two were off by 900 and 2200 tolerances before estimates beside much longer steps were doubted.
-    for k in (0..40).chain([232, 274]) {
+    // The last three were off by 232 tolerances before the beginning of a window's ramp was doubted as a kink is, and by 900 and 2200
+    // before estimates beside much longer steps were.
+    for k in (0..40).chain([216, 232, 274]) {
         for judged in nekton_tests::drive_study::judge(k).unwrap_or_else(|error| panic!("scene {k}: {error}")) {
             print!("{}", judged.row);
             assert!(judged.error <= 100.0 || judged.noticed, "{}", judged.row);
