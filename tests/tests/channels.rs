@@ -210,6 +210,32 @@ fn a_motion_torn_by_a_piece_given_early_or_not_followed_is_noticed_by_every_meth
     }
 }
 
+#[test]
+fn pieces_that_meet_but_for_the_last_digit_of_the_time_continue_each_other() {
+    let joint = Joint { parent_anchor: [2.0, 0.0], ..slider(Drive::Motion(Signal::Channel)) };
+    let links = [one(MASSES[0]), Link { joint: Some(joint), ..one(MASSES[1]) }];
+    let alone = [one(1.0)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3]), body(&alone, [0.0, 5.0, 0.0], [0.0; 3])];
+    let row = |t: f64| [t, 0.1 * t + 0.02 * (3.0 * t).sin(), 0.1 + 0.06 * (3.0 * t).cos(), -0.18 * (3.0 * t).sin()];
+    for method in [Method::Rk4 { step: 0.05 }, Method::Abm4 { step: 0.05 }, Method::Gauss6 { step: 0.05 }, adams(1e-9)]
+    {
+        for dense in [false, true] {
+            let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }, method);
+            let mut sim = sim.view();
+            for tick in 0..60 {
+                let (from, to) = (0.05 * f64::from(tick), 0.05 * f64::from(tick) + 0.05);
+                // The energy before the first command is not held against what follows.
+                let drift = sim.energy_drift().unwrap();
+                assert!(drift.amount.abs() <= 1e-3 * drift.kinetic, "{method:?} {dense} {tick}: {drift:?}");
+                sim.set_channel(0, row(from), row(to)).unwrap();
+                let t = 0.05 * f64::from(tick + 1);
+                if dense { sim.advance_dense(t, 10.0) } else { sim.advance(t) }.unwrap();
+                assert_eq!(sim.notice(), None, "{method:?} {dense} {tick}");
+            }
+        }
+    }
+}
+
 /// Two ellipses in a fluid, hinged, with a spring; `torque` drives the hinge.
 fn hinged_pair(torque: Signal<'_, f64>, method: Method<f64>, look: impl FnOnce(&mut Sim<'_, f64>)) {
     let one = link(nekton::scene::Shape::Ellipse { a: 0.5, b: 0.12 }, 1.0, 24);

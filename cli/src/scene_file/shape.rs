@@ -20,11 +20,6 @@ pub enum ShapeDef {
     Curve(Vec<[f64; 2]>),
 }
 
-/// Nodes of a smooth outline if the scene does not say.
-pub const SMOOTH_NODES: usize = 64;
-/// Nodes of an outline with corners if the scene does not say.
-pub const CORNERED_NODES: usize = 128;
-
 impl ShapeDef {
     /// Reads `shape = { … }`.
     pub fn read(item: &Item<'_>) -> Outcome<Self> {
@@ -85,19 +80,11 @@ impl ShapeDef {
             ShapeDef::Curve(points) => Shape::Curve { points },
         }
     }
-
-    /// Node count if the scene does not say.
-    pub fn default_nodes(&self) -> usize {
-        match self {
-            ShapeDef::Rectangle(..) | ShapeDef::Polygon(..) => CORNERED_NODES,
-            _ => SMOOTH_NODES,
-        }
-    }
 }
 
-/// Reads `nodes = n`: even and at least 8, or `"auto"`: 0, as the core has it.
-pub fn nodes(item: Option<Item<'_>>, shape: &ShapeDef) -> Outcome<usize> {
-    let Some(item) = item else { return Ok(shape.default_nodes()) };
+/// Reads `nodes = n`: even and at least 8, or `"auto"`, as without it: 0, as the core has it.
+pub fn nodes(item: Option<Item<'_>>) -> Outcome<usize> {
+    let Some(item) = item else { return Ok(0) };
     if item.is_text() {
         return item.word(&["auto"]).map(|_| 0);
     }

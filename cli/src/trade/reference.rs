@@ -55,7 +55,7 @@ pub struct Reference {
     pub until: f64,
     /// Nodes of the link that has most.
     pub nodes: usize,
-    /// Difference from the trajectory with 2/3 of the nodes and ten times the tolerance, relative to `travel`.
+    /// Difference from the trajectory with 2/3 of the nodes and a looser tolerance (by 5 to 20 times), relative to `travel`.
     pub error: f64,
     /// What the second opinion says of it.
     pub opinion: Opinion,
@@ -195,7 +195,8 @@ pub fn reference(
         let mut before: Option<(Path, usize, f64)> = None;
         for round in 0..ROUNDS {
             tell(&format!("reference: {nodes} nodes to t = {until:.4}"));
-            let tolerance = TOLERANCE.max(tolerance * 0.1_f64.powi(round as i32));
+            // Never the same as the round before, also at the tightest.
+            let tolerance = TOLERANCE.max(tolerance * 0.1_f64.powi(round as i32)) * (2 - round % 2) as f64;
             let run = bench.once(&setting(nodes, tolerance), until, limit * PATIENCE, 0.0);
             match (run.ended, &before) {
                 (Ended::Failed(e), None) => return Err(e.into()),

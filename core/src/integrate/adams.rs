@@ -206,9 +206,11 @@ impl<R: Real> Adams<R> {
     }
 
     /// The rate's derivative has jumped at the present time. Formulas of high order that look across a kink make errors of up to a
-    /// hundred times their estimates: until they no longer do, a step is judged as Euler's would be.
+    /// hundred times their estimates: until they no longer do, a step is judged as Euler's would be. The order grows by equal steps
+    /// alone, since one that grew with every step would always look back so far.
     pub fn kink(&mut self) {
         self.doubtful = self.order + 1;
+        self.starting = false;
     }
 
     /// Back to order 1 and a step to be estimated.

@@ -34,8 +34,10 @@ pub(crate) enum Jump {
 pub(crate) enum Seen {
     /// So that an error estimate sees it: a quarter of a period, an eighth of a ramp.
     Roughly,
-    /// For a method without an estimate: a sixteenth of a period.
+    /// For a method without an estimate: a sixteenth of a period, a thirty-second of a ramp.
     Well,
+    /// Periods roughly, ramps, the steepest of smooth functions, well.
+    RampsWell,
 }
 
 /// A signal compiled into a model: numbers live in the model's store.
@@ -108,8 +110,9 @@ impl<R: Real> Signal<'_, R> {
                 if let Some(w) = window {
                     finite("from", w.from)?;
                     finite("to", w.to)?;
-                    if !(w.ramp > R::zero()
-                        && w.ramp + w.ramp <= (w.to - w.from) * (R::one() + R::lit(8.0) * R::EPSILON))
+                    // Steps within a ramp take digits of the time.
+                    let digits = R::lit(64.0) * R::EPSILON * w.from.abs().max(w.to.abs());
+                    if !(w.ramp > digits && w.ramp + w.ramp <= (w.to - w.from) * (R::one() + R::lit(8.0) * R::EPSILON))
                     {
                         return Err(Error::new(Status::OutOfRange).of("ramp", w.ramp.to_f64()));
                     }
@@ -180,13 +183,14 @@ impl<R: Real> SignalRecord<R> {
             Kind::Constant(_) => h,
             Kind::Table | Kind::Channel => self.rows(store, channels).seen(motion, share, t, h),
             Kind::Harmonic(window) => {
-                let turns = R::lit(match share {
-                    Seen::Roughly => 0.25,
-                    Seen::Well => 0.0625,
-                });
-                let period = self.shortest_period(motion, store) * turns;
+                let (turns, ramps) = match share {
+                    Seen::Roughly => (0.25, 0.125),
+                    Seen::Well => (0.0625, 0.03125),
+                    Seen::RampsWell => (0.25, 0.03125),
+                };
+                let period = self.shortest_period(motion, store) * R::lit(turns);
                 let Some(w) = window else { return h.min(period) };
-                let ramp = (w.ramp * turns * R::HALF).min(period);
+                let ramp = (w.ramp * R::lit(ramps)).min(period);
                 let mut limit = h;
                 for (start, end, scale) in [
                     (w.from, w.from + w.ramp, ramp),
@@ -242,7 +246,8 @@ impl<R: Real> SignalRecord<R> {
         match self.kind {
             Kind::Constant(_) | Kind::Harmonic(None) | Kind::Channel => false,
             Kind::Harmonic(Some(w)) => {
-                let began = |edge: R| (t - edge) * (edge - (t - h)) >= R::zero();
+                // Not at the beginning of the step: that was seen by the one before, if there was any.
+                let began = |edge: R| t == edge || (t - edge) * (edge - (t - h)) > R::zero();
                 began(w.from) || began(w.to - w.ramp)
             }
             Kind::Table => self.rows(store, &[]).kinks_at(motion, t, h),

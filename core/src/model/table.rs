@@ -248,7 +248,7 @@ impl<R: Real> Rows<'_, R> {
     /// See [`crate::model::signal::SignalRecord::seen`]. O(rows in the step).
     pub(super) fn seen(&self, motion: bool, share: Seen, t: R, h: R) -> R {
         let part = R::lit(match share {
-            Seen::Roughly => 0.5,
+            Seen::Roughly | Seen::RampsWell => 0.5,
             Seen::Well => 0.05,
         });
         let drives = |at: Moment<R>| if motion { self.evaluate(at)[2] } else { self.evaluate(at)[0] };

@@ -9,7 +9,7 @@ use crate::model::Formulation;
 use crate::model::signal::{Jump, Seen};
 use crate::model::table::{channel_jump, channel_kink};
 use crate::simulation::sim::Sim;
-use crate::simulation::state::{Method, Missed, Watch};
+use crate::simulation::state::{Balance, Method, Missed, Watch};
 
 impl<R: Real> Sim<'_, R> {
     /// A step of at most `wish` that `Gauss6` may make: no longer than to the next jump, and such that the drives are resolved where a
@@ -21,7 +21,7 @@ impl<R: Real> Sim<'_, R> {
         let kink = self.model.next_kink(t, end, channels);
         let room = if kink < t + wish { kink - t } else { wish };
         let seen = |share| self.model.seen(share, t, room, channels).length;
-        let h = if seen(Seen::Roughly) < room { seen(Seen::Well) } else { room };
+        let h = if seen(Seen::RampsWell) < room { seen(Seen::Well) } else { room };
         h.max(R::lit(16.0) * R::EPSILON * t.abs()).min(wish)
     }
 
@@ -61,7 +61,9 @@ impl<R: Real> Sim<'_, R> {
     /// A step begins at `t`: pieces of channels that end there, or begin there and were given before, may jump.
     pub(crate) fn meet_channels(&mut self, t: R) {
         if self.model.head.channels > 0 {
-            let rows = if self.progress.commanded == t { 1..2 } else { 0..2 };
+            // The integrator's time and the one shown may differ by rounding.
+            let now = (self.progress.commanded - t).abs() <= R::lit(4.0) * R::EPSILON * t.abs();
+            let rows = if now { 1..2 } else { 0..2 };
             self.meet_pieces(t, &rows);
         }
     }
@@ -96,6 +98,10 @@ impl<R: Real> Sim<'_, R> {
         let t = self.progress.time;
         let Some((coordinate, motion)) = self.model.channel(channel) else { return };
         let jump = channel_jump(motion, t, old, new);
+        if self.tears(jump) && self.progress.watch == Watch::Nothing {
+            // Not torn, but begun: what the energy was before does not bind it.
+            self.progress.balance = Balance::unknown();
+        }
         // What is found out now of the last step is not of the call that made it.
         if jump != Jump::None {
             self.begin_watch();
