@@ -122,6 +122,8 @@ impl Values {
             "sim_bytes": p.sim_bytes,
             "operations": p.operations,
         });
+        let outlines = setup.scene.outlines().into_iter().map(|(whose, what)| (whose, json!(what)));
+        out["outlines"] = Value::Object(outlines.collect());
         out["notices"] = json!(setup.notices());
         out
     }
@@ -165,6 +167,9 @@ impl Values {
             }
         }
         let _ = write!(text, "\nplan\n{}", setup.model.view().plan());
+        for (whose, what) in setup.scene.outlines() {
+            let _ = write!(text, "\noutline of {whose}: {what}");
+        }
         for notice in setup.notices() {
             let _ = write!(text, "\nnotice: {notice}");
         }

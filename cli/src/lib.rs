@@ -17,17 +17,19 @@ mod signals;
 mod trade;
 mod watch;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use ending::Ending;
+use ending::{Ending, spoken};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0  done
-  2  bad input: one line on standard error names file, line and a way out; nothing was written
+  2  bad input: one line on standard error names file, line and a way out; nothing was written. Or standard output could not be
+     written (a reader that has gone away is no error); results of a run are there then
   3  the run stopped before its end (contact, a singular matrix, a tolerance that cannot be met, SIGINT, SIGTERM); the results up to
      then were written, and report.html says why it stopped";
 
@@ -76,8 +78,8 @@ enum Command {
         /// Folder for trade.csv, trade.svg, recommended.csv and reference.csv [default: SCENE with the ending .trade]
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Relative errors for which a setting is recommended
-        #[arg(long, value_name = "E", value_parser = positive, default_values_t = [1e-3, 1e-6, 1e-9])]
+        /// Relative errors for which a setting is recommended, one or more: --error 1e-3 1e-6
+        #[arg(long, value_name = "E …", value_parser = positive, value_delimiter = ',', default_values = ["1e-3", "1e-6", "1e-9"])]
         error: Vec<f64>,
         /// Seconds after which a run is given up and noted as "over the limit"
         #[arg(long, value_name = "SECONDS", value_parser = positive, default_value_t = 5.0)]
@@ -120,6 +122,22 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Arguments in which every number after `--error` has an `--error` of its own: a list that took all that follows would swallow the
+/// scene.
+fn spread(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut spread: Vec<OsString> = Vec::new();
+    let mut listing = false;
+    for argument in arguments {
+        let number = argument.to_str().is_some_and(|a| a.split(',').all(|a| a.parse::<f64>().is_ok()));
+        if listing && number && spread.last().is_some_and(|last| last != "--error") {
+            spread.push("--error".into());
+        }
+        listing = argument == "--error" || (listing && number);
+        spread.push(argument);
+    }
+    spread
+}
+
 /// A time with its unit.
 fn span(text: &str) -> Result<Duration, String> {
     let unit = text.find(|c: char| c.is_ascii_alphabetic() && c != 'e').unwrap_or(text.len());
@@ -147,7 +165,7 @@ fn channel(text: &str) -> Result<(String, PathBuf), String> {
 
 /// Does what the arguments of the process say.
 pub fn command() -> ExitCode {
-    let ending = match Arguments::parse().command {
+    let ending = match Arguments::parse_from(spread(std::env::args_os())).command {
         Command::Run { scene, out, error, channels, checkpoint, every, resume, force } => {
             let wish = checkpoint::Wish { folder: checkpoint, every, resume, force };
             run::run(&scene, &out, error, &channels, &wish)
@@ -159,7 +177,7 @@ pub fn command() -> ExitCode {
         Command::Plan { scene, ingredients: false, .. } => plan::plan(&scene),
         Command::Plan { scene, csv, .. } => ingredients::print(&scene, csv),
     };
-    match ending {
+    match ending.and_then(|ending| spoken().map(|()| ending)) {
         Ok(Ending::Complete) => ExitCode::SUCCESS,
         Ok(Ending::Stopped) => ExitCode::from(3),
         Err(problem) => {

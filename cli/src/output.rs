@@ -85,18 +85,8 @@ pub struct Target {
 impl Target {
     /// Checks before a long computation that the folder can be written, without leaving a trace.
     pub fn check(folder: &Path) -> Result<Self, Problem> {
-        let target = Target { folder: folder.to_owned() };
-        if folder.exists() && !folder.is_dir() {
-            return Err(Problem::file(folder, "is not a folder").hint("name another folder with --out"));
-        }
-        if let Some(name) = NAMES.iter().find(|n| folder.join(n).is_dir()) {
-            return Err(Problem::file(&folder.join(name), "is a folder where a file is to be written"));
-        }
-        // A folder that is not there yet is made beside its first parent that is.
-        let existing = folder.ancestors().find(|p| p.exists() || p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let existing = if existing.as_os_str().is_empty() { Path::new(".") } else { existing };
-        temporary(existing).map_err(|e| target.refused(&e))?;
-        Ok(target)
+        check(folder, NAMES)?;
+        Ok(Target { folder: folder.to_owned() })
     }
 
     fn refused(&self, error: &io::Error) -> Problem {
@@ -134,6 +124,35 @@ impl Target {
         }
         Ok(())
     }
+}
+
+/// Checks that a folder can be written, and made if it is not there, and that no folder is where one of the files is to be. Leaves
+/// no trace.
+pub fn check(folder: &Path, names: &[&str]) -> Result<(), Problem> {
+    let wrong = |text: String| Err(Problem::file(folder, text).hint("name another folder with --out"));
+    let target = |p: &Path| fs::read_link(p).map(|t| t.display().to_string()).unwrap_or_default();
+    if let Some(link) = folder.ancestors().find(|p| p.is_symlink() && !p.exists()) {
+        return wrong(format!(
+            "cannot be written: {} is a link to {}, which is not there",
+            link.display(),
+            target(link)
+        ));
+    }
+    if folder.exists() && !folder.is_dir() {
+        return wrong("is not a folder".to_owned());
+    }
+    if let Some(name) = names.iter().find(|n| folder.join(n).is_dir()) {
+        return Err(Problem::file(&folder.join(name), "is a folder where a file is to be written"));
+    }
+    if folder.file_name().is_none() && !folder.exists() {
+        return wrong("is no name for a new folder".to_owned());
+    }
+    // What is made here goes at once; only making it shows what stands against it.
+    let absent = |p: &&Path| matches!(p.symlink_metadata(), Err(e) if e.kind() == io::ErrorKind::NotFound);
+    let made: Vec<&Path> = folder.ancestors().take_while(|p| !p.as_os_str().is_empty()).take_while(absent).collect();
+    let done = fs::create_dir_all(folder).and_then(|()| temporary(folder).map(drop));
+    made.iter().for_each(|p| drop(fs::remove_dir(p)));
+    done.or_else(|e| wrong(format!("cannot be written: {e}")))
 }
 
 /// The results of a complete run that a folder holds.

@@ -11,6 +11,9 @@ pub fn plan(path: &Path) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
     say(&setup.model.view().plan().to_string());
     say(&format!("nodes                    {}", setup.nodes().join(", ")));
+    for (whose, what) in setup.scene.outlines() {
+        say(&format!("outline of {whose}: {what}"));
+    }
     for notice in setup.notices() {
         say(&format!("notice: {notice}"));
     }

@@ -5,7 +5,7 @@ pub mod log;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::record::{Record, Row};
+use crate::record::{Record, Row, base, shortest};
 
 /// Colours that people with any colour vision can tell apart (after Okabe and Ito).
 pub const COLOURS: [(u8, u8, u8); 8] = [
@@ -135,10 +135,14 @@ fn resolutions(record: &Record) -> Vec<Series> {
     series
 }
 
+/// Numbers beyond are not drawn: their differences may be none.
+const LARGEST: f64 = 1e300;
+
 /// Smallest interval that holds all values, a little enlarged.
 fn bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (low, high) =
-        values.filter(|v| v.is_finite()).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    let (low, high) = values
+        .filter(|v| v.abs() <= LARGEST)
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if low > high {
         return (-1.0, 1.0);
     }
@@ -175,6 +179,15 @@ fn axis(name: &str, unit: &str, e: i32) -> String {
     if e == 0 { format!("{name} ({unit})") } else { format!("{name} (10{} {unit})", superscript(e)) }
 }
 
+/// The name of a quantity from which a number was taken.
+fn less(name: &str, from: f64) -> String {
+    match from {
+        0.0 => name.to_owned(),
+        x if x < 0.0 => format!("{name} + {}", shortest(-x)),
+        x => format!("{name} − {}", shortest(x)),
+    }
+}
+
 /// A tick's number, without the digits that come from binary rounding.
 fn tick(x: &f64) -> String {
     let text = format!("{x:.4}");
@@ -190,17 +203,29 @@ pub fn over_time(title: &str, name: &str, unit: &str, series: &[Series]) -> Outc
     let times = series.iter().flat_map(|s| s.points.iter().map(|p| p.0));
     let (from, to) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
     let times = if from < to { (from, to) } else { (0.0, 1.0) };
-    let values = bounds(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
-    draw(title, ("time (s)", times), (name, unit, values), HEIGHT, series, &[])
+    let (low, high) = bounds(series.iter().flat_map(|s| s.points.iter().map(|p| p.1)));
+    // Where all values are far from 0 they are drawn from a number near them.
+    let from = base(low, high, high - low);
+    let moved: Vec<Series>;
+    let (name, series) = if from == 0.0 {
+        (name.to_owned(), series)
+    } else {
+        let near = |s: &Series| Series { points: s.points.iter().map(|p| (p.0, p.1 - from)).collect(), ..s.clone() };
+        moved = series.iter().map(near).collect();
+        (less(name, from), moved.as_slice())
+    };
+    draw(title, ("time (s)", times), (&name, unit, (low - from, high - from)), HEIGHT, series, &[])
 }
 
 fn trajectories(record: &Record) -> Outcome<String> {
     let mut shapes: Vec<(Vec<[f64; 2]>, RGBColor)> = Vec::new();
+    let from = record.origin();
     let walls = record.tank.iter().chain(&record.obstacles);
-    shapes.extend(walls.map(|w| (w.clone(), GREY)));
+    let near = |w: &Vec<[f64; 2]>| w.iter().map(|p| [p[0] - from[0], p[1] - from[1]]).collect();
+    shapes.extend(walls.map(|w| (near(w), GREY)));
     for row in [record.rows.first(), record.rows.last()].into_iter().flatten() {
         let links = record.outlines.iter().zip(&row.pose).enumerate();
-        shapes.extend(links.map(|(k, (outline, pose))| (Record::placed(outline, pose), colour(k))));
+        shapes.extend(links.map(|(k, (outline, pose))| (Record::placed_from(outline, pose, from), colour(k))));
     }
     let series: Vec<Series> = record
         .links
@@ -208,7 +233,12 @@ fn trajectories(record: &Record) -> Outcome<String> {
         .enumerate()
         .map(|(k, link)| Series {
             name: link.clone(),
-            points: record.rows.iter().filter_map(|r| r.pose.get(k)).map(|p| (p[0], p[1])).collect(),
+            points: record
+                .rows
+                .iter()
+                .filter_map(|r| r.pose.get(k))
+                .map(|p| (p[0] - from[0], p[1] - from[1]))
+                .collect(),
             colour: colour(k),
             thick: true,
         })
@@ -226,7 +256,8 @@ fn trajectories(record: &Record) -> Outcome<String> {
     let widen = |r: (f64, f64), size: f64| (0.5 * (r.0 + r.1 - size), 0.5 * (r.0 + r.1 + size));
     let title = "Paths of the centres of mass, bodies at start and end";
     let (x, y) = (widen(x, unit * inner), widen(y, unit * height));
-    draw(title, ("x (m)", x), ("y", "m", y), (height + frame) as u32, &series, &shapes)
+    let x_name = format!("{} (m)", less("x", from[0]));
+    draw(title, (&x_name, x), (&less("y", from[1]), "m", y), (height + frame) as u32, &series, &shapes)
 }
 
 fn draw(
@@ -319,4 +350,49 @@ fn legend_text(area: &DrawingArea<SVGBackend<'_>, Shift>, name: &str, y: i32) ->
 fn in_pixels(svg: &str, height: u32) -> String {
     let fine = format!("width=\"{WIDTH}\" height=\"{height}\"");
     svg.replacen(&fine, &format!("width=\"{}\" height=\"{}\"", WIDTH / FINE, height / FINE), 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Series, colour, over_time, trajectories};
+    use crate::record::{Record, Row};
+
+    /// Every number of the picture is one, and it has ticks that differ.
+    fn sound(svg: &str, what: &str) {
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{what}: {svg}");
+        let texts: Vec<&str> =
+            svg.split("<text").skip(1).filter_map(|t| t.split_once(">\n")?.1.split('\n').next()).collect();
+        let ticks = |side: &str| svg.split("<text").skip(1).filter(|t| t.contains(side)).count();
+        assert!(ticks("text-anchor=\"end\"") >= 2, "{what}: {texts:?}");
+    }
+
+    #[test]
+    fn plots_have_an_end_and_numbers_at_any_offset_and_range() {
+        let offsets = [0.0, 1.0, -1.0, 1e-20, 1e3, 1e6, -1e9, 123_456_789.123, 1e12, 1e17, -1e17, 1e100, 1e308];
+        for offset in offsets {
+            for size in [0.0, 1e-300, 1e-20, 1e-6, 1.0, 16.0, 1e5, 1e17, 1e300] {
+                let what = format!("{offset} {size}");
+                let wave = |k: i32| offset + size * (0.3 * f64::from(k)).sin();
+                let points = (0..50).map(|k| (f64::from(k), wave(k))).filter(|p| p.1.is_finite()).collect();
+                let series = [Series { name: "s".into(), points, colour: colour(0), thick: false }];
+                sound(&over_time("title", "name", "unit", &series).unwrap(), &what);
+                let row = |k: i32| Row { pose: vec![[wave(k), offset, 0.1]], ..Row::default() };
+                let record = Record {
+                    links: vec!["b.l".into()],
+                    outlines: vec![vec![[1.0, 0.0], [0.0, 0.5], [-1.0, 0.0]]],
+                    rows: (0..50).map(row).collect(),
+                    ..Record::default()
+                };
+                sound(&trajectories(&record).unwrap(), &what);
+            }
+        }
+    }
+
+    #[test]
+    fn values_far_from_zero_are_drawn_from_a_number_near_them() {
+        let points = (0..9).map(|k| (f64::from(k), 1e9 + 0.25 * f64::from(k))).collect();
+        let series = [Series { name: "s".into(), points, colour: colour(0), thick: false }];
+        let svg = over_time("title", "energy", "J/m", &series).unwrap();
+        assert!(svg.contains("energy − 1e9 (J/m)"), "{svg}");
+    }
 }

@@ -123,6 +123,23 @@ impl Record {
         outline.iter().map(|p| [pose[0] + c * p[0] - s * p[1], pose[1] + s * p[0] + c * p[1]]).collect()
     }
 
+    /// A point near which everything is, and from which it is drawn, lest the digits of small bodies get lost far from (0, 0).
+    pub fn origin(&self) -> [f64; 2] {
+        let reach = self.outlines.iter().flatten().map(|p| p[0].hypot(p[1])).fold(0.0, f64::max);
+        let ranges = [0, 1].map(|c| {
+            let walls = self.tank.iter().chain(&self.obstacles).flatten().map(|p| p[c]);
+            let poses = self.rows.iter().flat_map(|r| &r.pose).flat_map(|p| [p[c] - reach, p[c] + reach]);
+            walls.chain(poses).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+        });
+        let size = ranges.map(|[low, high]| high - low).into_iter().fold(reach, f64::max);
+        ranges.map(|[low, high]| base(low, high, size))
+    }
+
+    /// The same with everything moved so that its [`Record::origin`] is (0, 0).
+    pub fn placed_from(outline: &[[f64; 2]], pose: &[f64; 3], origin: [f64; 2]) -> Vec<[f64; 2]> {
+        Self::placed(outline, &[pose[0] - origin[0], pose[1] - origin[1], pose[2]])
+    }
+
     /// Largest change of (total energy - work of the joints) since the start, and the largest kinetic energy.
     pub fn energy_drift(&self) -> Option<(f64, f64)> {
         let balance = |r: &Row| r.energy.total - r.energy.work;
@@ -131,4 +148,24 @@ impl Record {
         let scale = self.rows.iter().map(|r| r.energy.kinetic_fluid + r.energy.kinetic_bodies).fold(0.0, f64::max);
         Some((drift, scale))
     }
+}
+
+/// What is taken off numbers between `low` and `high` to draw them at a scale of `size`: 0, or a number near them with few digits
+/// if they are far more than that.
+pub fn base(low: f64, high: f64, size: f64) -> f64 {
+    let far = low.abs().max(high.abs());
+    let unit = 10f64.powf(size.log10().ceil());
+    if !(size > 0.0 && far.is_finite() && far > 1e3 * size && unit > 0.0) {
+        return 0.0;
+    }
+    // Below the digits of a number there is nothing to round.
+    let middle = low + 0.5 * (high - low);
+    let rounded = (middle / unit).round() * unit;
+    if rounded.is_finite() { rounded } else { middle }
+}
+
+/// A number in its shorter way of writing.
+pub fn shortest(x: f64) -> String {
+    let (plain, power) = (x.to_string(), format!("{x:e}"));
+    if plain.len() <= power.len() { plain } else { power }
 }

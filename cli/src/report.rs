@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::plots::COLOURS;
-use crate::record::Record;
+use crate::record::{Record, shortest};
 
 const PAGE: &str = include_str!("report.html");
 /// The animation interpolates between its frames; more than this many only make the page large.
@@ -73,14 +73,20 @@ fn data(record: &Record) -> Value {
     let stride = record.rows.len().div_ceil(MOST_FRAMES).max(1);
     let last = record.rows.len().saturating_sub(1);
     let chosen = || record.rows.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last).map(|(_, r)| r);
+    let origin = record.origin();
+    let near = |points: &[[f64; 2]]| -> Value {
+        outline(&points.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect::<Vec<_>>())
+    };
+    let pose = |p: &[f64; 3]| [short(p[0] - origin[0]), short(p[1] - origin[1]), short(p[2])];
     json!({
         "links": record.links,
+        "origin": origin.iter().any(|x| *x != 0.0).then(|| origin.map(shortest)),
         "colours": COLOURS.iter().map(|(r, g, b)| format!("rgb({r},{g},{b})")).collect::<Vec<_>>(),
         "outlines": record.outlines.iter().map(|o| outline(o)).collect::<Vec<_>>(),
-        "obstacles": record.obstacles.iter().map(|o| outline(o)).collect::<Vec<_>>(),
-        "tank": record.tank.as_ref().map(|t| outline(t)),
+        "obstacles": record.obstacles.iter().map(|o| near(o)).collect::<Vec<_>>(),
+        "tank": record.tank.as_ref().map(|t| near(t)),
         "t": chosen().map(|r| short(r.t)).collect::<Vec<_>>(),
         "gap": chosen().map(|r| short(r.gap)).collect::<Vec<_>>(),
-        "pose": chosen().map(|r| r.pose.iter().flatten().map(|x| short(*x)).collect()).collect::<Vec<Value>>(),
+        "pose": chosen().map(|r| r.pose.iter().flat_map(pose).collect()).collect::<Vec<Value>>(),
     })
 }

@@ -34,13 +34,15 @@ pub fn run(
 ) -> Result<Ending, Problem> {
     let mut scene = SceneFile::open(path)?;
     scene.feed(channels)?;
-    let mut setup = Setup::of(scene)?;
-    let mut plan = setup.scene.run()?.clone();
+    let mut plan = scene.run()?.clone();
     let target = Target::check(folder)?;
     let earlier = Earlier::find(folder).filter(|_| !wish.force);
     if let Some(earlier) = &earlier {
         earlier.allows(folder, plan.duration)?;
+        // Where results may go that are not to replace these.
+        Target::check(&beside(folder))?;
     }
+    let mut setup = Setup::of(scene)?;
     let asked = signals::listen();
     let choice = error.map(|error| trade::choose(path, &setup.scene, error)).transpose()?;
     if let Some(choice) = &choice {
@@ -96,7 +98,7 @@ pub fn run(
         // There is nothing to go on with.
         checkpoint.done();
     }
-    summary(&record, &folder, time);
+    summary(&setup, &record, &folder, time);
     Ok(if record.stopped.is_some() { Ending::Stopped } else { Ending::Complete })
 }
 
@@ -131,6 +133,7 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         ("integrator".into(), method),
         ("nodes".into(), setup.nodes().join(", ")),
     ];
+    settings.extend(setup.scene.outlines().into_iter().map(|(whose, what)| (format!("outline of {whose}"), what)));
     settings.extend(setup.scene.channels());
     Record {
         joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
@@ -346,9 +349,12 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
 }
 
 /// A few lines on standard output.
-fn summary(record: &Record, folder: &Path, time: Duration) {
+fn summary(setup: &Setup, record: &Record, folder: &Path, time: Duration) {
     let reached = record.rows.last().map_or(0.0, |r| r.t);
     say(&format!("t = {reached:.6} s reached in {:.2} s; {} rows", time.as_secs_f64(), record.rows.len()));
+    for (whose, what) in setup.scene.outlines() {
+        say(&format!("  outline of {whose}: {what}"));
+    }
     for (name, value) in &record.figures {
         say(&format!("  {name}: {value}"));
     }

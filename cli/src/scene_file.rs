@@ -2,6 +2,8 @@
 
 mod body;
 mod channels;
+mod file;
+mod outline;
 mod range;
 mod reader;
 mod run;
@@ -87,6 +89,14 @@ impl SceneFile {
     /// What the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
+    }
+
+    /// Outlines whose points are not in the scene file: whose they are, and what was read.
+    pub fn outlines(&self) -> Vec<(String, String)> {
+        let links = self.labels().into_iter().zip(self.bodies.iter().flat_map(|b| &b.links).map(|l| &l.shape));
+        let tank = self.tank.iter().map(|t| ("tank".to_owned(), &t.shape));
+        let walls = self.obstacles.iter().enumerate().map(|(k, o)| (format!("obstacle {}", k + 1), &o.shape));
+        links.chain(tank).chain(walls).filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
     }
 
     /// The text of the file.
@@ -201,7 +211,14 @@ impl SceneFile {
             }
         };
         // The gap of boundaries that touch is rounding only, and a limit of steps is told already.
-        let told = matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps);
+        let told =
+            matches!(error.status, Status::Overlap | Status::Contact | Status::TooManySteps | Status::DriveUnresolved);
+        if error.status == Status::DriveUnresolved {
+            text = match error.value {
+                0.0 => format!("{text} (its position or speed jumps, which would take an impulse)"),
+                step => format!("{text} (it takes steps of {step:.3e} s or less)"),
+            };
+        }
         if !error.what.is_empty() && !told {
             let size = error.value.abs();
             let value = if size == 0.0 || (1e-3..1e6).contains(&size) {

@@ -45,6 +45,7 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
     let until = wish.until.unwrap_or(duration);
     scene.with_core(|core| {
         let table = Table::new(&wish.out.clone().unwrap_or_else(|| beside(path)), mark(core, own));
+        table.check()?;
         let bench = Bench::new(core, own).map_err(|e| scene.problem(&e))?;
         let known = table.rows()?;
         let limit = Duration::from_secs_f64(wish.limit);
@@ -162,15 +163,15 @@ fn report(
     say("");
     for (error, row) in chosen {
         match row {
-            Some(m) => say(&format!("for {error:.0e}: {}, {:.1e} s/s", m.setting.text(), m.cost)),
+            Some(m) => say(&format!("for {error:e}: {}, {:.1e} s/s", m.setting.text(), m.cost)),
             None if *error < reference.error => {
-                say(&format!("for {error:.0e}: the reference itself is only good to {:.0e}", reference.error));
+                say(&format!("for {error:e}: the reference itself is only good to {:.0e}", reference.error));
             }
             None if !reference.opinion.certifies(*error) => {
                 let (text, way) = reference.opinion.against(*error);
-                say(&format!("for {error:.0e}: {text} ({way})"));
+                say(&format!("for {error:e}: {text} ({way})"));
             }
-            None => say(&format!("for {error:.0e}: no setting that was tried is exact enough")),
+            None => say(&format!("for {error:e}: no setting that was tried is exact enough")),
         }
     }
 }

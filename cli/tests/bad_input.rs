@@ -278,11 +278,6 @@ fn unreadable_table() {
     bad("t,u,u\n", "stroke.csv:1: column `u` appears twice");
     bad("t,u\n", "stroke.csv: has a header but no rows");
     bad("", "stroke.csv: is empty; expected a header t,u,du,ddu");
-
-    let outline = "shape = { curve = \"outline.csv\" }";
-    let place = Place::new(&changed("shape = { ellipse = [1.0, 0.4] }", outline));
-    place.put("outline.csv", "x,z\n0,0\n");
-    refuses_in(&place, "outline.csv:1: unknown column `z` (allowed: x, y)");
 }
 
 #[test]

@@ -404,7 +404,11 @@ fn steps_that_miss_a_drive_are_told_with_the_joint_and_the_step_that_would_have_
     let done = Place::new(&scene(0.1)).run();
     assert_eq!(done.code, Some(0), "a notice is no error: {}", done.err);
     let told: Vec<&str> = done.out.lines().filter(|l| l.contains("for what a drive does within it")).collect();
-    assert!(told.len() == 1 && told[0].contains("link `fish.tail`") && told[0].contains("(step = "), "{}", done.out);
+    assert!(
+        told.len() == 1 && told[0].contains("link `fish.tail`") && told[0].contains("(it takes steps of "),
+        "{}",
+        done.out
+    );
     assert!(!Place::new(&scene(0.002)).run().out.contains("notice"));
 }
 

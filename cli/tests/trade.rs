@@ -147,6 +147,28 @@ fn run_with_an_error_measures_where_there_is_no_table() {
 }
 
 #[test]
+fn several_errors_may_follow_one_another_as_the_help_says() {
+    let place = Place::new(SMALL);
+    for arguments in [
+        &["scene.toml", "--quick", "--error", "1e-3", "2.5e-6"][..],
+        &["--error", "1e-3", "2.5e-6", "--quick", "scene.toml"],
+        &["--quick", "--error", "1e-3", "--error=2.5e-6", "scene.toml"],
+        &["--quick", "--error", "1e-3,2.5e-6", "scene.toml"],
+        &["--error", "1e-3", "2.5e-6", "scene.toml", "--quick"],
+    ] {
+        let done = place.nekton(&[&["trade"], arguments].concat());
+        assert_eq!(done.code, Some(0), "{arguments:?}: {}", done.err);
+        let told: Vec<&str> = done.out.lines().filter_map(|l| l.strip_prefix("for ")?.split(':').next()).collect();
+        assert_eq!(told, ["1e-3", "2.5e-6"], "{arguments:?}");
+        assert_eq!(rows(&place, "scene.trade/recommended.csv").len(), 2);
+    }
+    let done = place.nekton(&["trade", "scene.toml", "--error", "1e-3", "-1"]);
+    assert_eq!(done.code, Some(2), "{}", done.out);
+    let help = place.nekton(&["trade", "--help"]).out;
+    assert!(help.contains("--error 1e-3 1e-6") && help.contains("[default: 1e-3"), "{help}");
+}
+
+#[test]
 fn bad_wishes_are_refused_and_nothing_is_written() {
     let place = Place::new(SMALL);
     place.put("plain.csv", "x\n");

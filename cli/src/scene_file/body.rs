@@ -30,7 +30,8 @@ pub struct BodyDef {
 pub struct LinkDef {
     /// Name, given or `link1`, `link2`, …
     pub name: String,
-    shape: ShapeDef,
+    /// Its outline.
+    pub shape: ShapeDef,
     mass: Mass<f64>,
     pub(super) nodes: usize,
     circulation: f64,
@@ -81,6 +82,7 @@ fn name(section: &Section<'_>, kind: &str, number: usize) -> Outcome<(String, us
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() || ".,\"".contains(c)) {
         return Err(item.problem(format!("cannot be `{}`", text.escape_debug())).hint("no dot, comma or quote"));
     }
+    item.no_formula()?;
     Ok((text.to_owned(), item.line))
 }
 

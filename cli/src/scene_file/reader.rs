@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::file;
+
 /// Something wrong with a file: one line for the user.
 #[derive(Debug)]
 pub struct Problem {
@@ -80,7 +82,10 @@ pub struct Source {
 impl Source {
     /// Reads a file.
     pub fn open(path: &Path) -> Outcome<Self> {
-        let bytes = std::fs::read(path).map_err(|e| Problem::file(path, format!("cannot be read: {e}")))?;
+        // A scene may come through a pipe, but not without end.
+        let open = std::fs::File::open(path).map_err(|e| e.to_string());
+        let bytes = open.and_then(|f| file::bounded(f, file::SCENE));
+        let bytes = bytes.map_err(|e| Problem::file(path, format!("cannot be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|e| {
             let good = e.utf8_error().valid_up_to();
             let line = 1 + e.as_bytes().iter().take(good).filter(|b| **b == b'\n').count();
@@ -188,6 +193,18 @@ impl<'t> Item<'t> {
     /// True or false.
     pub fn flag(&self) -> Outcome<bool> {
         self.value.as_bool().ok_or_else(|| self.wrong("true or false"))
+    }
+    /// Refuses a name that a spreadsheet would take for a formula at the head of a column, or a reader of tables for a comment.
+    pub fn no_formula(&self) -> Outcome<()> {
+        let text = self.text()?;
+        match text.trim_start().chars().next() {
+            Some(c) if "=+-@#".contains(c) => {
+                let hint =
+                    format!("spreadsheets take what begins with {c} for a formula or a comment; begin with a letter");
+                Err(self.problem(format!("cannot be `{}`", text.escape_debug())).hint(hint))
+            }
+            _ => Ok(()),
+        }
     }
     /// One of several words.
     pub fn word(&self, allowed: &[&'static str]) -> Outcome<&'static str> {

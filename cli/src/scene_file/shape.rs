@@ -2,8 +2,9 @@
 
 use nekton::scene::Shape;
 
-use super::reader::{Item, Outcome};
-use super::table;
+use super::outline::Outline;
+use super::outline::naca::{Naca, POINTS, Tail};
+use super::reader::{Item, Outcome, Section};
 
 /// A shape with its own points.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,15 +17,17 @@ pub enum ShapeDef {
     Rectangle(f64, f64, Option<f64>),
     /// `polygon = [[x, y], …], radius = r`
     Polygon(Vec<[f64; 2]>, Option<f64>),
-    /// `curve = [[x, y], …]` or a file
-    Curve(Vec<[f64; 2]>),
+    /// `curve = [[x, y], …]` or a file, or `naca = "2412"`
+    Curve(Outline),
 }
 
 impl ShapeDef {
     /// Reads `shape = { … }`.
     pub fn read(item: &Item<'_>) -> Outcome<Self> {
-        const KINDS: &[&str] = &["ellipse", "star", "rectangle", "polygon", "curve"];
-        let section = item.section("`shape`", &["ellipse", "star", "rectangle", "polygon", "curve", "radius"])?;
+        const KINDS: &[&str] = &["ellipse", "star", "rectangle", "polygon", "curve", "naca"];
+        const KEYS: &[&str] =
+            &["ellipse", "star", "rectangle", "polygon", "curve", "naca", "radius", "chord", "points", "tail"];
+        let section = item.section("`shape`", KEYS)?;
         let (kind, value) = section.one_of(KINDS)?;
         let cornered = matches!(kind, "rectangle" | "polygon");
         let radius = match section.get("radius") {
@@ -32,6 +35,10 @@ impl ShapeDef {
             Some(r) => Some(r.positive()?),
             None => None,
         };
+        let stranger = ["chord", "points", "tail"].iter().find_map(|k| section.get(k)).filter(|_| kind != "naca");
+        if let Some(other) = stranger {
+            return Err(other.problem("is for `naca` only"));
+        }
         let measures = || {
             let pair = value.pair()?;
             match pair.iter().find(|x| **x <= 0.0) {
@@ -55,13 +62,17 @@ impl ShapeDef {
                 }
                 ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
             }
+            "naca" => ShapeDef::Curve(naca(&section, &value)?),
+            "curve" if value.is_text() => ShapeDef::Curve(Outline::open(&value)?),
             _ => {
-                let points =
-                    if kind == "curve" && value.is_text() { table::outline(&value)? } else { value.points()? };
+                let points = value.points()?;
                 if points.len() < 3 {
                     return Err(value.problem(format!("needs at least 3 points, but has {}", points.len())));
                 }
-                if kind == "curve" { ShapeDef::Curve(points) } else { ShapeDef::Polygon(points, radius) }
+                match kind {
+                    "curve" => ShapeDef::Curve(Outline { points, told: None }),
+                    _ => ShapeDef::Polygon(points, radius),
+                }
             }
         })
     }
@@ -77,9 +88,32 @@ impl ShapeDef {
                 Shape::Rectangle { width: *width, height: *height, radius: *radius }
             }
             ShapeDef::Polygon(vertices, radius) => Shape::Polygon { vertices, radius: *radius },
-            ShapeDef::Curve(points) => Shape::Curve { points },
+            ShapeDef::Curve(outline) => Shape::Curve { points: &outline.points },
         }
     }
+
+    /// What the user is told of points that the scene file does not show.
+    pub fn told(&self) -> Option<&str> {
+        match self {
+            ShapeDef::Curve(outline) => outline.told.as_deref(),
+            _ => None,
+        }
+    }
+}
+
+/// Reads `naca = "2412", chord = 1.0`.
+fn naca(section: &Section<'_>, value: &Item<'_>) -> Outcome<Outline> {
+    if value.is_number() {
+        return Err(value.problem("must be a string, but is a number").hint("write naca = \"2412\""));
+    }
+    let chord = section.need("chord")?.positive()?;
+    let sharp = section.or("tail", "blunt", |t| t.word(&["blunt", "sharp"]))? == "sharp";
+    let tail = if sharp { Tail::Sharp } else { Tail::Blunt };
+    let naca = Naca::new(value.text()?, tail).map_err(|e| value.problem(e))?;
+    let count = section.or("points", POINTS, Item::count)?;
+    let points = naca.outline(chord, count);
+    let points = points.map_err(|e| section.get("points").map_or_else(|| value.problem(&e), |p| p.problem(&e)))?;
+    Ok(Outline::new(points, &format!("naca {}, {} tail", value.text()?.trim(), if sharp { "sharp" } else { "blunt" })))
 }
 
 /// Reads `nodes = n`: even and at least 8, or `"auto"`, as without it: 0, as the core has it.

@@ -126,7 +126,7 @@ impl SignalDef {
 impl Channel {
     /// Reads the table that is to stand for the channel. `scene` is the scene's path.
     pub fn read_table(&mut self, scene: &Path, file: &Path) -> Outcome<()> {
-        let bytes = std::fs::read(file)
+        let bytes = super::file::read(file, super::file::TABLE)
             .map_err(|e| Problem::file(file, format!("cannot be read for channel `{}`: {e}", self.name)))?;
         let refuse = |text: &str| Problem::line(scene, self.slopes_line, format!("`slopes` {text}"));
         let table = table::rows(file, &bytes, self.wanted, refuse)?;
@@ -142,6 +142,7 @@ fn channel_name(item: &Item<'_>) -> Outcome<String> {
         let hint = "no equals sign, comma or quote, and no blank at its ends";
         return Err(item.problem(format!("cannot be `{}`", text.escape_debug())).hint(hint));
     }
+    item.no_formula()?;
     Ok(text.to_owned())
 }
 

@@ -1,7 +1,8 @@
-//! CSV files that a scene refers to: outlines (`x,y`) and functions of time (`t,u[,du,ddu]`).
+//! CSV files that a scene refers to: functions of time (`t,u[,du,ddu]`).
 
 use std::path::Path;
 
+use super::file;
 use super::range::excursion;
 use super::reader::{Item, Outcome, Problem, suggest};
 use super::slopes::{estimate, monotone, spline};
@@ -10,12 +11,6 @@ use super::slopes::{estimate, monotone, spline};
 struct Columns {
     names: Vec<String>,
     rows: Vec<(usize, Vec<f64>)>,
-}
-
-/// A file that an item names.
-fn open(path: &Path, from: &Item<'_>) -> Outcome<Vec<u8>> {
-    let complain = |e: std::io::Error| from.problem(format!("names {}, which cannot be read: {e}", path.display()));
-    std::fs::read(path).map_err(complain)
 }
 
 fn read(path: &Path, bytes: &[u8], allowed: &[&str]) -> Outcome<Columns> {
@@ -97,14 +92,6 @@ impl Columns {
     }
 }
 
-/// Points of an outline, columns `x,y`.
-pub fn outline(from: &Item<'_>) -> Outcome<Vec<[f64; 2]>> {
-    let path = from.source.relative(from.text()?);
-    let columns = read(&path, &open(&path, from)?, &["x", "y"])?;
-    let (x, y) = (columns.need(&path, "x")?, columns.need(&path, "y")?);
-    Ok(x.into_iter().zip(y).map(|(x, y)| [x, y]).collect())
-}
-
 /// How rates are made that a table does not give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slopes {
@@ -147,7 +134,8 @@ const LOSS: f64 = 0.01;
 pub fn motion(from: &Item<'_>, wanted: Wanted, slopes: Option<&Item<'_>>) -> Outcome<Table> {
     let path = from.source.relative(from.text()?);
     let refuse = |message: &str| slopes.map_or_else(|| from.problem(message), |s| s.problem(message));
-    rows(&path, &open(&path, from)?, wanted, refuse)
+    let complain = |e| from.problem(format!("names {}, which cannot be read: {e}", path.display()));
+    rows(&path, &file::read(&path, file::TABLE).map_err(complain)?, wanted, refuse)
 }
 
 /// Rows (t, u, u̇, ü) from the content of a file. Without `du` the rates are those of [`monotone`] or of the cubic spline

@@ -47,6 +47,11 @@ impl Table {
         Table { folder: folder.to_owned(), mark }
     }
 
+    /// Refuses a folder that cannot be written, before anything is measured.
+    pub fn check(&self) -> Result<(), Problem> {
+        crate::output::check(&self.folder, &["trade.csv", "trade.svg", "recommended.csv", "reference.csv"])
+    }
+
     fn path(&self) -> PathBuf {
         self.folder.join("trade.csv")
     }

@@ -43,6 +43,7 @@ statuses! {
     StepTooLong = 3, "the step is too long for the motion: its error is a tenth of a body or more";
     DriveUnresolved = 4, "the step is too long for what a drive does within it";
     EnergyDrift = 5, "energy and the work of the drives do not balance";
+    PointRepeated = 6, "the first point is repeated at the end and was dropped";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";

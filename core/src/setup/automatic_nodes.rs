@@ -4,7 +4,7 @@
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::geometry::curve::SHARP;
+use crate::geometry::curve::{SHARP, distinct};
 #[cfg(feature = "alloc")]
 use crate::scene::{Body, Link, Scene, Wall};
 use crate::scene::{Description, Quadrature, Shape, each_link};
@@ -73,6 +73,7 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
             if plain { corners.max(flanks) } else { corners * (1.0 + 0.25 * Real::ln(ratio(width, height))) }
         }
         Shape::Polygon { vertices, radius } => {
+            let vertices = distinct(vertices);
             let sides = || vertices.iter().zip(vertices.iter().cycle().skip(1));
             let length = |(a, b): (&[R; 2], &[R; 2])| (b[0] - a[0]).hypot(b[1] - a[1]).to_f64();
             let short = sides().map(length).fold(f64::MAX, f64::min);
@@ -80,7 +81,7 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
             let blunt = if vertices.len() < 4 { 1.6 } else { 1.0 };
             blunt * vertices.len() as f64 * corner(digits, radius.map_or(SHARP, |r| r.to_f64() / short))
         }
-        Shape::Curve { points } => points.len() as f64 * (1.0 + 0.2 * digits),
+        Shape::Curve { points } => distinct(points).len() as f64 * (1.0 + 0.2 * digits),
     };
     let count = own.max(neighbours).min(MOST as f64);
     // NaN, of a shape that is refused later, counts as 0.
