@@ -44,7 +44,7 @@ enum {
     NEKTON_OK = 0,
     /** the outline runs clockwise and was turned round */
     NEKTON_N_OUTLINE_REVERSED = 1,
-    /** the tolerance asked for in space is not met */
+    /** the error in space may exceed the tolerance asked for, or a thousandth */
     NEKTON_N_UNRESOLVED = 2,
     /** the step is too long for the motion: its error is a tenth of a body or more */
     NEKTON_N_STEP_TOO_LONG = 3,
@@ -119,7 +119,9 @@ enum {
     /** these bytes are no state that was saved of this model by this version */
     NEKTON_E_BAD_SAVE = -33,
     /** the time asked for lies before the present time */
-    NEKTON_E_PAST_TIME = -34
+    NEKTON_E_PAST_TIME = -34,
+    /** the error in space may be as large as the result: more nodes are needed */
+    NEKTON_E_BOUND_EXCEEDED = -35
 };
 
 /** Not set: refused. */
@@ -467,7 +469,8 @@ typedef struct nekton_scene_def {
     int32_t quadrature;
     /**
      * Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
-     * returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+     * returns NEKTON_N_UNRESOLVED. 0: boundaries of 0 nodes get as many as 1e-6 takes (single precision: 1.2e-3), and a step whose
+     * bound exceeds 1e-3 returns NEKTON_N_UNRESOLVED.
      */
     double tolerance;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
@@ -482,6 +485,10 @@ typedef struct nekton_scene_def {
     const struct nekton_body_def *bodies;
     /** Number of bodies, >= 1. */
     size_t body_count;
+    /** 1: go on where the bound of the relative error in space exceeds 1; 0: that is refused (NEKTON_E_BOUND_EXCEEDED). */
+    int32_t allow_unresolved;
+    /** 0. */
+    int32_t reserved;
 } nekton_scene_def;
 
 /** How a simulation is integrated in time. To be filled by nekton_method_init first. */
@@ -700,7 +707,7 @@ void nekton_diag_text(const struct nekton_diag *diag,
 nekton_status nekton_scene_def_init(struct nekton_scene_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+ * Fills a wall definition with defaults: at the origin, automatic nodes, no circulation; the shape is still to be set. Call it as
  * nekton_wall_def_init(&def): a macro of that name adds size and version.
  * Errors: as nekton_scene_def_init. Any thread.
  */
@@ -716,7 +723,7 @@ nekton_status nekton_wall_def_init(struct nekton_wall_def *def,
 nekton_status nekton_body_def_init(struct nekton_body_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+ * Fills a link definition with defaults: density 1, automatic nodes, no circulation, no parent; if it gets one, a hinge
  * locked at 0. The shape is still to be set. Call it as nekton_link_def_init(&def).
  * Errors: as nekton_scene_def_init. Any thread.
  */

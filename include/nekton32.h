@@ -188,7 +188,8 @@ typedef struct nekton32_scene_def {
     int32_t quadrature;
     /**
      * Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
-     * returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+     * returns NEKTON_N_UNRESOLVED. 0: boundaries of 0 nodes get as many as 1e-6 takes (single precision: 1.2e-3), and a step whose
+     * bound exceeds 1e-3 returns NEKTON_N_UNRESOLVED.
      */
     float tolerance;
     /** 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check. */
@@ -203,6 +204,10 @@ typedef struct nekton32_scene_def {
     const struct nekton32_body_def *bodies;
     /** Number of bodies, >= 1. */
     size_t body_count;
+    /** 1: go on where the bound of the relative error in space exceeds 1; 0: that is refused (NEKTON_E_BOUND_EXCEEDED). */
+    int32_t allow_unresolved;
+    /** 0. */
+    int32_t reserved;
 } nekton32_scene_def;
 
 /** How a simulation is integrated in time. To be filled by nekton_method_init first. */
@@ -324,7 +329,7 @@ extern "C" {
 nekton_status nekton32_scene_def_init(struct nekton32_scene_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+ * Fills a wall definition with defaults: at the origin, automatic nodes, no circulation; the shape is still to be set. Call it as
  * nekton32_wall_def_init(&def): a macro of that name adds size and version.
  * Errors: as nekton32_scene_def_init. Any thread.
  */
@@ -340,7 +345,7 @@ nekton_status nekton32_wall_def_init(struct nekton32_wall_def *def,
 nekton_status nekton32_body_def_init(struct nekton32_body_def *def, size_t struct_size, uint32_t abi_version);
 
 /**
- * Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+ * Fills a link definition with defaults: density 1, automatic nodes, no circulation, no parent; if it gets one, a hinge
  * locked at 0. The shape is still to be set. Call it as nekton32_link_def_init(&def).
  * Errors: as nekton32_scene_def_init. Any thread.
  */

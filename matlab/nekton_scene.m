@@ -8,7 +8,7 @@ function [scene, names, run] = nekton_scene(given, controlled)
 %     tank          struct: shape, position, angle, nodes
 %     obstacle      struct array or cell: the same and circulation
 %     body          struct array or cell: name, position, angle, velocity, angular_velocity, root, link
-%     run           struct: duration, output_interval, integrator, force, quadrature, tolerance, shortcuts
+%     run           struct: duration, output_interval, integrator, force, quadrature, tolerance, allow_unresolved, shortcuts
 %
 %   A body's link (struct array or cell) has name, shape, nodes, circulation, density (or mass, inertia, centre_of_mass),
 %   parent, hinge (or slider) and motion. A shape is a struct with one of the fields ellipse = [a b],
@@ -17,7 +17,7 @@ function [scene, names, run] = nekton_scene(given, controlled)
 %   (and stiffness, damping, rest, start); the text 'control' stands for what the simulation's function of controls gives,
 %   as a motion and as a torque.
 %
-%   nodes = 'auto' takes as many as run.tolerance (the relative error in space, 1e-8) needs.
+%   nodes = 'auto' takes as many as run.tolerance (the relative error in space, 1e-6) needs; so does a boundary without `nodes`.
 %
 %   names has the fields body, link (both by link) and joint: texts. run is the struct of the same name.
 %
@@ -42,11 +42,12 @@ circulation = get(given, 'circulation', struct());
 known(circulation, {'model'}, 'circulation');
 scene.circulation = get(circulation, 'model', 'full');
 run = get(given, 'run', struct());
-known(run, {'duration', 'output_interval', 'integrator', 'force', 'quadrature', 'tolerance', 'shortcuts'}, 'run');
+known(run, {'duration', 'output_interval', 'integrator', 'force', 'quadrature', 'tolerance', 'allow_unresolved', 'shortcuts'}, 'run');
 scene.force = get(run, 'force', 'exact');
 scene.quadrature = get(run, 'quadrature', 'graded');
 scene.tolerance = get(run, 'tolerance', []);
 scene.shortcuts = double(get(run, 'shortcuts', true));
+scene.allow_unresolved = double(get(run, 'allow_unresolved', false));
 
 tank = get(given, 'tank', []);
 if ~isempty(tank)

@@ -14,9 +14,9 @@ mod table;
 
 use std::path::{Path, PathBuf};
 
-use nekton::STEP_LIMIT;
 use nekton::scene::{Body, CirculationModel, ForceFormula, Link, Quadrature, Repulsion, Scene, Wall};
 use nekton::status::{Error, Place, Status};
+use nekton::{ModelBuf, STEP_LIMIT};
 
 pub use body::{BodyDef, LinkDef};
 pub use reader::Problem;
@@ -26,7 +26,7 @@ use run::{RUN, read_run};
 use shape::{ShapeDef, nodes};
 
 /// A scene with its own data and the lines on which everything stands.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SceneFile {
     source: Source,
     fluid_density: f64,
@@ -43,6 +43,7 @@ pub struct SceneFile {
     force: ForceFormula,
     quadrature: Quadrature,
     tolerance: Option<f64>,
+    allow_unresolved: bool,
     shortcuts: bool,
     run: Option<RunDef>,
     lines: Lines,
@@ -136,6 +137,7 @@ impl SceneFile {
             force: self.force,
             quadrature: self.quadrature,
             tolerance: self.tolerance,
+            allow_unresolved: self.allow_unresolved,
             shortcuts: self.shortcuts,
         })
     }
@@ -244,7 +246,7 @@ impl SceneFile {
         let lines = self.lines_of(error.place);
         let keys: &[&str] = match error.status {
             Status::BadShape | Status::SelfIntersection => &["shape"],
-            Status::NodeCount => &["nodes", "shape"],
+            Status::NodeCount | Status::BoundExceeded => &["nodes", "shape"],
             Status::BadParent => &["parent"],
             Status::Massless => &["density", "mass"],
             Status::BadTable => &["table"],
@@ -269,12 +271,37 @@ impl SceneFile {
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
             Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
+            Status::BoundExceeded | Status::Singular => Some(self.more_nodes(error.place)),
             Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
             _ => None,
         };
         self.source.problem(line, self.describe(error)).maybe_hint(hint)
+    }
+}
+
+impl SceneFile {
+    /// What helps where the nodes of a place do not: those that would be taken if the scene gave none.
+    fn more_nodes(&self, place: Place) -> String {
+        let mut scene = self.clone();
+        let given = match place {
+            Place::Link(b, l) => scene.bodies.get_mut(b).and_then(|b| b.links.get_mut(l)).map(|l| &mut l.nodes),
+            Place::Tank => scene.tank.as_mut().map(|w| &mut w.nodes),
+            Place::Obstacle(k) => scene.obstacles.get_mut(k).map(|w| &mut w.nodes),
+            _ => None,
+        };
+        let go_on = "`allow_unresolved = true` in [run] goes on all the same";
+        match given.map(std::mem::take) {
+            None => format!("give it more nodes; {go_on}"),
+            Some(0) => format!(
+                "its outline takes more nodes than are chosen automatically: give it more, or a simpler outline; {go_on}"
+            ),
+            Some(_) => match scene.with_core(|core| ModelBuf::new(core)).ok().and_then(|m| m.view().nodes(place)) {
+                Some(nodes) => format!("without `nodes` it gets {nodes}, which suffice at the start; {go_on}"),
+                None => format!("leave `nodes` out, and it gets as many as it needs; {go_on}"),
+            },
+        }
     }
 }
 
@@ -285,7 +312,7 @@ impl WallDef {
         Ok(WallDef {
             position: section.or("position", [0.0; 2], Item::pair)?,
             angle: section.or("angle", 0.0, Item::number)?,
-            nodes: nodes(section.get("nodes"), &shape)?,
+            nodes: nodes(section.get("nodes"))?,
             circulation: section.or("circulation", 0.0, Item::number)?,
             lines: section.lines(&[]),
             shape,
@@ -347,7 +374,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
     let mut force = ForceFormula::ExactGradient;
     let mut quadrature = Quadrature::Graded;
     let mut tolerance = None;
-    let mut shortcuts = true;
+    let (mut shortcuts, mut allow_unresolved) = (true, false);
     if let Some(section) = &run {
         if section.or("force", "exact", |m| m.word(&["exact", "boundary"]))? == "boundary" {
             force = ForceFormula::Boundary;
@@ -357,6 +384,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         }
         tolerance = section.get("tolerance").map(|t| t.positive()).transpose()?;
         shortcuts = section.or("shortcuts", true, Item::flag)?;
+        allow_unresolved = section.or("allow_unresolved", false, Item::flag)?;
     }
     Ok(SceneFile {
         source: Source::empty(),
@@ -370,6 +398,7 @@ fn read(source: &Source) -> Outcome<SceneFile> {
         force,
         quadrature,
         tolerance,
+        allow_unresolved,
         shortcuts,
         run: run.as_ref().map(read_run).transpose()?,
         lines: top.lines(&["body", "obstacle", "tank"]),

@@ -29,7 +29,7 @@ impl Setup {
 
     /// Compiles a scene.
     pub fn of(scene: SceneFile) -> Result<Self, Problem> {
-        let model = scene.with_core(|core| ModelBuf::resolved(core)).map_err(|e| scene.problem(&e))?;
+        let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
         let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();

@@ -39,8 +39,8 @@
 //!    obstacles, and bodies of links with joints. An interface that has scenes of its own implements
 //!    [`Description`](scene::Description) instead.
 //! 2. **Compile.** [`ModelBuf::new`], or [`Model::init`] in the caller's memory, checks the scene and makes an immutable
-//!    [`Model`]: outlines, nodes, what rigid motion leaves unchanged. [`ModelBuf::resolved`] also looks whether automatic node counts
-//!    meet the scene's tolerance. [`Model::plan`] tells what will be computed and what that costs.
+//!    [`Model`]: outlines, nodes, what rigid motion leaves unchanged. [`ModelBuf::new`] also looks whether automatic node counts
+//!    meet the scene's tolerance at the start. [`Model::plan`] tells what will be computed and what that costs.
 //! 3. **Step.** [`SimBuf::new`], or [`Sim::init`], begins a [`Sim`] with one [`Method`]: [`Sim::advance`] to a time, [`Sim::advance_dense`] for
 //!    output at many times, [`Sim::step`] for one step; [`Sim::set_state`] and [`Sim::set_channel`] from outside; [`Sim::rhs`] for an
 //!    integrator of your own. One model serves any number of simulations, one per thread.
@@ -84,7 +84,7 @@
 //!
 #![cfg_attr(
     not(feature = "alloc"),
-    doc = "[`ModelBuf`]: #features\n[`ModelBuf::new`]: #features\n[`ModelBuf::resolved`]: #features\n[`SimBuf`]: #features\n[`SimBuf::new`]: #features"
+    doc = "[`ModelBuf`]: #features\n[`ModelBuf::new`]: #features\n[`SimBuf`]: #features\n[`SimBuf::new`]: #features"
 )]
 
 #[cfg(feature = "alloc")]
@@ -141,7 +141,9 @@ pub use fluid::contact::Gap;
 pub use model::boundary::BoundaryRecord;
 pub use model::plan::{Formulation, Plan};
 pub use model::{CoordinateRecord, JointInfo, LinkInfo, LinkRecord, Model, ModelHead};
-pub use setup::automatic_nodes::DEFAULT_TOLERANCE;
+#[cfg(feature = "alloc")]
+pub use setup::automatic_nodes::Resolved;
+pub use setup::automatic_nodes::{DEFAULT_TOLERANCE, NOTICED_BOUND};
 pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};

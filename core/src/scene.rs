@@ -28,8 +28,12 @@ pub struct Scene<'a, R> {
     /// How integrals over the boundaries are formed where boundaries come close to each other or to themselves.
     pub quadrature: Quadrature,
     /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes (`None`:
-    /// [`DEFAULT_TOLERANCE`](crate::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded.
+    /// [`DEFAULT_TOLERANCE`](crate::DEFAULT_TOLERANCE)), and a simulation notices when it is exceeded (`None`: when the bound of the
+    /// error exceeds a thousandth).
     pub tolerance: Option<R>,
+    /// Go on where the bound of the relative error in space exceeds 1. Off: that is refused (`BoundExceeded`), since such numbers mean
+    /// nothing.
+    pub allow_unresolved: bool,
     /// Use what symmetry makes unnecessary (a lone body, a lone swimmer). Off only to cross-check.
     pub shortcuts: bool,
 }
@@ -133,7 +137,7 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`], `ModelBuf::resolved`).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]); with a heap `ModelBuf::new` looks whether they suffice at the start.
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -168,7 +172,7 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`], `ModelBuf::resolved`).
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]); with a heap `ModelBuf::new` looks whether they suffice at the start.
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,
@@ -343,6 +347,7 @@ impl<R: Real> Scene<'_, R> {
             force: ForceFormula::ExactGradient,
             quadrature: Quadrature::Graded,
             tolerance: None,
+            allow_unresolved: false,
             shortcuts: true,
         }
     }

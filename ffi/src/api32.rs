@@ -19,7 +19,7 @@ pub unsafe extern "C" fn nekton32_scene_def_init(
     unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
-/// Fills a wall definition with defaults: at the origin, 64 nodes, no circulation; the shape is still to be set. Call it as
+/// Fills a wall definition with defaults: at the origin, automatic nodes, no circulation; the shape is still to be set. Call it as
 /// nekton32_wall_def_init(&def): a macro of that name adds size and version.
 /// Errors: as nekton32_scene_def_init. Any thread.
 #[unsafe(no_mangle)]
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn nekton32_body_def_init(
     unsafe { report(null_mut(), sized::init(def, struct_size, abi_version)) }
 }
 
-/// Fills a link definition with defaults: density 1, 64 nodes, no circulation, no parent; if it gets one, a hinge
+/// Fills a link definition with defaults: density 1, automatic nodes, no circulation, no parent; if it gets one, a hinge
 /// locked at 0. The shape is still to be set. Call it as nekton32_link_def_init(&def).
 /// Errors: as nekton32_scene_def_init. Any thread.
 #[unsafe(no_mangle)]
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn nekton32_model_init(
     diag: *mut nekton_diag,
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
-    unsafe { report_notice(diag, model::init(mem.cast(), len, def, model, false)) }
+    unsafe { report_notice(diag, model::init(mem.cast(), len, def, model)) }
 }
 
 /// The same in memory from the heap; to be given to nekton32_model_free.

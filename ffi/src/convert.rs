@@ -147,6 +147,9 @@ pub(crate) unsafe fn body<'a, R: Real>(b: &BodyDef<R>) -> Outcome<Body<'a, R>> {
 
 /// A scene without its walls and bodies.
 pub(crate) fn settings<'a, R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'a, R>> {
+    if s.reserved != 0 {
+        return Err(Fault::of(Status::Unsupported, "reserved", f64::from(s.reserved)));
+    }
     Ok(Scene {
         repulsion: if s.repulsion_epsilon == R::zero() {
             None
@@ -169,6 +172,7 @@ pub(crate) fn settings<'a, R: Real>(s: &SceneDef<R>) -> Outcome<Scene<'a, R>> {
             kind => return unknown("quadrature", kind),
         },
         tolerance: if s.tolerance == R::zero() { None } else { Some(s.tolerance) },
+        allow_unresolved: flag("allow_unresolved", s.allow_unresolved)?,
         shortcuts: flag("shortcuts", s.shortcuts)?,
         ..Scene::new(s.fluid_density, s.gravity)
     })

@@ -41,7 +41,7 @@ const fn named<R>(double: &'static str, single: &'static str) -> &'static str {
 }
 
 impl<R: Real> Definition for SceneDef<R> {
-    const SIZES: &'static [usize] = &[size_of::<Self>()];
+    const SIZES: &'static [usize] = &[core::mem::offset_of!(Self, allow_unresolved), size_of::<Self>()];
     const ADVICE: &'static str = named::<R>("call nekton_scene_def_init", "call nekton32_scene_def_init");
     fn filled(struct_size: u32) -> Self {
         SceneDef {
@@ -55,6 +55,8 @@ impl<R: Real> Definition for SceneDef<R> {
             force: NEKTON_FORCE_EXACT_GRADIENT,
             quadrature: NEKTON_QUADRATURE_GRADED,
             tolerance: R::zero(),
+            allow_unresolved: 0,
+            reserved: 0,
             shortcuts: 1,
             tank: core::ptr::null(),
             obstacles: core::ptr::null(),
@@ -70,7 +72,7 @@ impl<R: Real> Definition for WallDef<R> {
     const ADVICE: &'static str = named::<R>("call nekton_wall_def_init", "call nekton32_wall_def_init");
     fn filled(struct_size: u32) -> Self {
         let zero = R::zero();
-        WallDef { struct_size, shape: no_shape(), position: [zero; 2], nodes: 64, angle: zero, circulation: zero }
+        WallDef { struct_size, shape: no_shape(), position: [zero; 2], nodes: 0, angle: zero, circulation: zero }
     }
 }
 
@@ -82,7 +84,7 @@ impl<R: Real> Definition for LinkDef<R> {
         LinkDef {
             struct_size,
             shape: no_shape(),
-            nodes: 64,
+            nodes: 0,
             circulation: zero,
             mass_kind: NEKTON_MASS_DENSITY,
             parent: -1,
@@ -158,7 +160,7 @@ macro_rules! closed {
 }
 
 closed!(
-    SceneDef.body_count: usize,
+    SceneDef.reserved: i32,
     WallDef.circulation: R,
     LinkDef.start: [R; 2],
     BodyDef.link_count: usize,

@@ -8,7 +8,8 @@ use crate::model_object::{begin_model, model, model_req};
 #[cfg(feature = "std")]
 use crate::shared::NEKTON_ALIGN;
 use crate::types::*;
-use nekton::{Formulation, Model, Real, Status};
+use nekton::scene::Description;
+use nekton::{Formulation, Model, ModelRequirement, Real, Status};
 
 /// Writes a result through a pointer that was checked before anything was computed.
 pub(crate) unsafe fn give<T>(to: *mut T, value: T) -> Outcome<Status> {
@@ -32,7 +33,6 @@ pub(crate) unsafe fn init<R: Real>(
     len: usize,
     def: *const SceneDef<R>,
     out: *mut *mut ModelHandle<R>,
-    owned: bool,
 ) -> Outcome<Option<Fault>> {
     check_pointer("model", out.cast_const())?;
     // SAFETY: the caller's promise about the definition; the memory is checked before it is written.
@@ -40,8 +40,22 @@ pub(crate) unsafe fn init<R: Real>(
         let scene = Checked::new(def)?;
         let need = Model::requirement(&scene)?;
         check_memory(mem, len, &model_req::<R>(&need)?, (def.addr(), size_of::<SceneDef<R>>()))?;
-        let mut parts = begin_model(mem, &need)?;
-        let head = Model::init(&scene, &mut parts.memory)?;
+        compile(mem, &scene, &need, out, false)
+    }
+}
+
+/// Compiles into memory that was checked.
+unsafe fn compile<R: Real>(
+    mem: *mut u8,
+    scene: &impl Description<R>,
+    need: &ModelRequirement,
+    out: *mut *mut ModelHandle<R>,
+    owned: bool,
+) -> Outcome<Option<Fault>> {
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut parts = begin_model(mem, need)?;
+        let head = Model::init(scene, &mut parts.memory)?;
         let handle = parts.finish(head, owned)?;
         give(out, handle)?;
         let notice = model(handle.cast_const())?.notices().next();
@@ -81,12 +95,13 @@ pub(crate) unsafe fn on_heap<T>(req: &nekton_req, make: impl FnOnce(*mut u8) -> 
 
 #[cfg(feature = "std")]
 pub(crate) unsafe fn create<R: Real>(def: *const SceneDef<R>, out: *mut *mut ModelHandle<R>) -> Outcome<Option<Fault>> {
-    let mut need = nekton_req::default();
+    check_pointer("model", out.cast_const())?;
     // SAFETY: the caller's promise about the definition.
     unsafe {
-        check_pointer("model", out.cast_const())?;
-        self::req(def, &mut need)?;
-        on_heap(&need, |mem| init(mem, need.size, def, out, true))
+        let scene = Checked::new(def)?;
+        let scene = nekton::Resolved::of(&scene)?;
+        let need = Model::requirement(&scene)?;
+        on_heap(&model_req::<R>(&need)?, |mem| compile(mem, &scene, &need, out, true))
     }
 }
 

@@ -125,6 +125,9 @@ fn changes() -> Vec<(&'static str, Change)> {
             force: [|s| s.scene.force = NEKTON_FORCE_BOUNDARY],
             quadrature: [|s| s.scene.quadrature = NEKTON_QUADRATURE_GRADED],
             tolerance: [|s| s.scene.tolerance = 0.5],
+            allow_unresolved: [|s| s.scene.allow_unresolved = 1],
+            // Refused unless it is 0.
+            reserved: [],
             shortcuts: [|s| s.scene.shortcuts = 0],
             tank: [|s| s.scene.tank = std::ptr::null()],
             obstacles: [|s| s.walls.swap(0, 1)],

@@ -95,6 +95,11 @@ macro_rules! sizes {
             method.known = MethodDef { struct_size: method.known.struct_size, ..adams() };
             assert_eq!(run((&raw const new).cast(), (&raw const method).cast()), of_today);
 
+            // A caller from before `allow_unresolved` gets none of it, whatever lies behind.
+            let before = offset_of!(SceneDef<Real>, allow_unresolved) as u32;
+            let older = SceneDef { struct_size: before, allow_unresolved: 77, reserved: 77, ..old };
+            assert_eq!(run(&older, &adams()), of_today);
+
             // A field that this library does not know, set by a newer caller, is refused, and the place is told.
             let mut diag = empty_diag();
             let mut req = nekton_req::default();

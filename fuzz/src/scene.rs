@@ -215,6 +215,8 @@ impl<R: Number> Definition<R> {
             force: if bytes.below(4) == 0 { bytes.kind(2) } else { NEKTON_FORCE_EXACT_GRADIENT },
             quadrature: bytes.kind(2),
             tolerance: R::of(if bytes.below(4) > 0 { 0.0 } else { bytes.real(1e-3) }),
+            allow_unresolved: bytes.kind(2),
+            reserved: 0,
             shortcuts: bytes.kind(2),
             tank: if tank.is_empty() { core::ptr::null() } else { pointer(bytes, &tank) },
             obstacles: pointer(bytes, &obstacles),

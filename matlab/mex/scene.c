@@ -35,7 +35,7 @@ static void optionals(const mxArray *s, mwIndex i, const char *name, double *val
     if (a) memcpy(values, numbers(a, n, name), n * sizeof(double));
 }
 
-static void nodes(const mxArray *s, mwIndex i, int32_t shape, size_t *n)
+static void nodes(const mxArray *s, mwIndex i, size_t *n)
 {
     const mxArray *a = field(s, i, "nodes");
     static const char *const automatic[] = {"auto"};
@@ -43,8 +43,6 @@ static void nodes(const mxArray *s, mwIndex i, int32_t shape, size_t *n)
         *n = (size_t)word(a, automatic, 1, "nodes");
     } else if (a) {
         *n = (size_t)whole(a, 0, 65536, "nodes");
-    } else if (shape == NEKTON_SHAPE_RECTANGLE || shape == NEKTON_SHAPE_POLYGON) {
-        *n = 128;
     }
 }
 
@@ -104,7 +102,7 @@ static void read_wall(const mxArray *a, mwIndex i, nekton_wall_def *wall)
     optionals(a, i, "position", wall->position, 2);
     optional(a, i, "angle", &wall->angle);
     optional(a, i, "circulation", &wall->circulation);
-    nodes(a, i, wall->shape.kind, &wall->nodes);
+    nodes(a, i, &wall->nodes);
 }
 
 /* A number; a matrix with rows (t, u, du, ddu); a struct with harmonic terms and perhaps a window; or the text 'channel'. */
@@ -146,7 +144,7 @@ static void read_link(const mxArray *a, mwIndex i, nekton_link_def *link)
     known(a, names, COUNT(names), "a link");
     check(nekton_link_def_init(link), NULL, "scene");
     read_shape(field(a, i, "shape"), &link->shape);
-    nodes(a, i, link->shape.kind, &link->nodes);
+    nodes(a, i, &link->nodes);
     optional(a, i, "circulation", &link->circulation);
     optional(a, i, "density", &link->density);
     if (field(a, i, "mass")) {
@@ -198,7 +196,7 @@ static void read_body(const mxArray *a, mwIndex i, nekton_body_def *body)
 void read_scene(const mxArray *a, nekton_scene_def *scene)
 {
     static const char *const names[] = {"fluid_density", "gravity",   "repulsion_epsilon", "repulsion_alpha", "circulation", "force",
-                                        "quadrature",    "tolerance", "shortcuts",         "tank",            "obstacles",   "bodies"};
+                                        "quadrature",    "tolerance", "shortcuts",         "tank",            "obstacles",   "bodies",    "allow_unresolved"};
     static const char *const circulations[] = {"full", "paper"}, *const forces[] = {"exact", "boundary"},
                       *const quadratures[] = {"graded", "plain"};
     known(a, names, COUNT(names), "scene");
@@ -212,6 +210,7 @@ void read_scene(const mxArray *a, nekton_scene_def *scene)
     if ((f = field(a, 0, "force"))) scene->force = word(f, forces, COUNT(forces), "force");
     if ((f = field(a, 0, "quadrature"))) scene->quadrature = word(f, quadratures, COUNT(quadratures), "quadrature");
     optional(a, 0, "tolerance", &scene->tolerance);
+    if ((f = field(a, 0, "allow_unresolved"))) scene->allow_unresolved = (int32_t)whole(f, 0, 1, "allow_unresolved");
     if ((f = field(a, 0, "shortcuts"))) scene->shortcuts = (int32_t)whole(f, 0, 1, "shortcuts");
     if ((f = field(a, 0, "tank"))) {
         nekton_wall_def *tank = mxCalloc(1, sizeof *tank);

@@ -227,7 +227,7 @@ fn automatic_nodes_meet_the_tolerance() {
                     (wall(disc(5.0), [0.0; 2], 0.0, nodes), [wall(shapes[1], [3.0, 0.0], 0.2, nodes)]);
                 let (tank, obstacles): (_, &[_]) = if k % 2 == 0 { (Some(tank), &obstacles) } else { (None, &[]) };
                 let scene = Scene { bodies: &bodies, tank, obstacles, quadrature, tolerance, ..Scene::new(1.0, 0.0) };
-                let model = ModelBuf::resolved(&scene).unwrap();
+                let model = ModelBuf::new(&scene).unwrap();
                 let mut sim = SimBuf::new(model.into(), adams(1e-6)).unwrap();
                 let mut sim = sim.view();
                 let notice = sim.notice();

@@ -33,7 +33,7 @@ pub struct LinkDef {
     /// Its outline.
     pub shape: ShapeDef,
     mass: Mass<f64>,
-    nodes: usize,
+    pub(super) nodes: usize,
     circulation: f64,
     /// How it hangs on its parent.
     pub joint: Option<JointDef>,
@@ -242,7 +242,7 @@ impl LinkDef {
         let name = names[index].0.clone();
         let shape = ShapeDef::read(&section.need("shape")?)?;
         Ok(LinkDef {
-            nodes: nodes(section.get("nodes"), &shape)?,
+            nodes: nodes(section.get("nodes"))?,
             mass: mass(section)?,
             circulation: section.or("circulation", 0.0, Item::number)?,
             joint: JointDef::read(section, index, names)?,

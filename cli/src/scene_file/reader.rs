@@ -72,7 +72,7 @@ pub fn suggest(word: &str, allowed: &[&str]) -> Option<String> {
 }
 
 /// A text with its path, from which lines are counted.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     /// As the user gave it.
     pub path: PathBuf,

@@ -53,7 +53,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Keys of the section.
 pub const RUN: &[&str] =
-    &["duration", "output_interval", "integrator", "force", "quadrature", "tolerance", "shortcuts"];
+    &["duration", "output_interval", "integrator", "force", "quadrature", "tolerance", "allow_unresolved", "shortcuts"];
 
 /// Reads the section.
 pub fn read_run(section: &Section<'_>) -> Outcome<RunDef> {

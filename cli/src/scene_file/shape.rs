@@ -21,11 +21,6 @@ pub enum ShapeDef {
     Curve(Outline),
 }
 
-/// Nodes of a smooth outline if the scene does not say.
-pub const SMOOTH_NODES: usize = 64;
-/// Nodes of an outline with corners if the scene does not say.
-pub const CORNERED_NODES: usize = 128;
-
 impl ShapeDef {
     /// Reads `shape = { … }`.
     pub fn read(item: &Item<'_>) -> Outcome<Self> {
@@ -104,14 +99,6 @@ impl ShapeDef {
             _ => None,
         }
     }
-
-    /// Node count if the scene does not say.
-    pub fn default_nodes(&self) -> usize {
-        match self {
-            ShapeDef::Rectangle(..) | ShapeDef::Polygon(..) => CORNERED_NODES,
-            _ => SMOOTH_NODES,
-        }
-    }
 }
 
 /// Reads `naca = "2412", chord = 1.0`.
@@ -129,9 +116,9 @@ fn naca(section: &Section<'_>, value: &Item<'_>) -> Outcome<Outline> {
     Ok(Outline::new(points, &format!("naca {}, {} tail", value.text()?.trim(), if sharp { "sharp" } else { "blunt" })))
 }
 
-/// Reads `nodes = n`: even and at least 8, or `"auto"`: 0, as the core has it.
-pub fn nodes(item: Option<Item<'_>>, shape: &ShapeDef) -> Outcome<usize> {
-    let Some(item) = item else { return Ok(shape.default_nodes()) };
+/// Reads `nodes = n`: even and at least 8, or `"auto"`, as without it: 0, as the core has it.
+pub fn nodes(item: Option<Item<'_>>) -> Outcome<usize> {
+    let Some(item) = item else { return Ok(0) };
     if item.is_text() {
         return item.word(&["auto"]).map(|_| 0);
     }

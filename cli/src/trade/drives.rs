@@ -168,6 +168,7 @@ mod tests {
             force: ForceFormula::ExactGradient,
             quadrature: Quadrature::Graded,
             tolerance: None,
+            allow_unresolved: false,
             shortcuts: true,
         };
         let all = strides(&scene, until);

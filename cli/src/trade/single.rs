@@ -25,6 +25,7 @@ pub fn single(scene: &Scene<'_, f64>) -> Scene<'static, f32> {
         force: scene.force,
         quadrature: scene.quadrature,
         tolerance: scene.tolerance.map(|x| x as f32),
+        allow_unresolved: scene.allow_unresolved,
         shortcuts: scene.shortcuts,
     }
 }

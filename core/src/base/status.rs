@@ -39,10 +39,11 @@ macro_rules! statuses {
 statuses! {
     Ok = 0, "ok";
     OutlineReversed = 1, "the outline runs clockwise and was turned round";
-    Unresolved = 2, "the tolerance asked for in space is not met";
+    Unresolved = 2, "the error in space may exceed the tolerance asked for, or a thousandth";
     StepTooLong = 3, "the step is too long for the motion: its error is a tenth of a body or more";
     DriveUnresolved = 4, "the step is too long for what a drive does within it";
     EnergyDrift = 5, "energy and the work of the drives do not balance";
+    PointRepeated = 6, "the first point is repeated at the end and was dropped";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";
@@ -77,6 +78,7 @@ statuses! {
     Busy = -32, "another thread uses this simulation";
     BadSave = -33, "these bytes are no state that was saved of this model by this version";
     PastTime = -34, "the time asked for lies before the present time";
+    BoundExceeded = -35, "the error in space may be as large as the result: more nodes are needed";
 }
 
 /// Where in the scene something is wrong. Indices count from 0; walls and bodies are counted apart.

@@ -15,7 +15,7 @@ use crate::dynamics::evaluation::{Coordinates, Counters, Evaluation, Indicators}
 use crate::dynamics::forces::circulation::{Circulation, Moving, data_error, solve};
 use crate::dynamics::forces::{buoyancy, repulsion};
 use crate::dynamics::kirchhoff::{add_lone_circulation, lone_momentum};
-use crate::dynamics::sizes::{force_scale, largest_force};
+use crate::dynamics::sizes::relative_force;
 use crate::fluid::pair_pass::{PassResult, pair_pass};
 use crate::fluid::potentials::{
     add_interior_potential, add_potential_moments, fill_flux, flux_moments, to_link_frames, to_world,
@@ -114,13 +114,13 @@ impl<R: Real> Evaluation<'_, R> {
         flux_moments(c, solution, moments);
         // Twice the difference of the halves, for the indicator.
         axpy(force, -R::HALF, moments);
-        let difference = largest_force(model, force) * R::TWO * density;
+        copy(w, force);
         axpy(force, R::one(), moments);
         to_world(c, density, force);
         if exact {
             add_frame_terms(links, motion.qd, motion.momentum, motion.gradient, force);
-            let scale = force_scale(model, force, motion.momentum, motion.qd);
-            self.kept.indicators.force = if scale > R::zero() { difference / scale } else { R::zero() };
+            let relative = relative_force(model, w, force, motion.momentum, motion.qd);
+            self.kept.indicators.force = relative * R::TWO * density;
         }
     }
 

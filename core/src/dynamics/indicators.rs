@@ -7,22 +7,26 @@
 //!
 //! Tested by `tests/indicators`, `tests/near_contact`.
 
-use crate::base::memory::{axpy, part, part_mut};
+use crate::base::complex::complex;
+use crate::base::memory::{at, axpy, part, part_mut};
 use crate::base::scalar::Real;
 use crate::dynamics::evaluation::{Evaluation, Indicators};
-use crate::dynamics::sizes::{force_scale, largest_force};
+use crate::dynamics::sizes::relative_force;
 use crate::fluid::pair_pass::{PassResult, pair_pass};
 use crate::fluid::potentials::{add_potential_moments, flux_moments};
+use crate::geometry::pose::put_three;
 use crate::linear::lu::Factors;
 use crate::model::Model;
+use crate::model::boundary::BoundaryRecord;
 
 /// Relative error indicators of the space discretization. They do not see an error of the shape itself.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Resolution<R> {
-    /// Asymmetry of the discrete mass before it is symmetrized, relative to its diagonal.
+    /// Asymmetry of the discrete mass before it is symmetrized, relative to its diagonal, link by link.
     pub mass: R,
-    /// Difference of the two halves of the force, relative to the largest force (torques over the reach of their links), or
-    /// to the kinetic energy of the fluid over the largest reach if that is more. 0 with the boundary formula.
+    /// Difference of the two halves of the force on a link, relative to that force (torques over the reach of their links), or where that
+    /// is more to the energy of its motion over its reach, or to the largest force on any link, less by as much as the link is smaller
+    /// than the largest. 0 with the boundary formula.
     pub force: R,
     /// Error of the constant density on the links (by the plain rule also on walls) as a solution of the boundary system; with circulation also the error of the
     /// fluxes of the bodies' isolated flows through every boundary, relative to the circulations, if that is more.
@@ -80,39 +84,62 @@ impl<R: Real> Evaluation<'_, R> {
         Resolution { mass, force, quadrature: quadrature.max(circulation), repulsion }
     }
 
+    /// The boundary on which the constant density of the last [`Evaluation::resolution`] errs most.
+    pub(crate) fn least_resolved<'m>(&self, model: &Model<'m, R>) -> Option<&'m BoundaryRecord<R>> {
+        let worst = |b: &BoundaryRecord<R>| {
+            let values = part(self.scratch.solution, b.first, b.nodes).iter();
+            values.fold(R::zero(), |m, x| m.max((*x - R::one()).abs()))
+        };
+        let all = model.boundaries.iter().filter(|b| b.link.is_some());
+        if model.head.plan.unknowns == 0 {
+            return all.into_iter().next();
+        }
+        all.map(|b| (worst(b), b)).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, b)| b)
+    }
+
     /// Difference of the halves of the Christoffel force, T₁ = Bᵀ A⁻¹ a against T₂ = −2 Xᵀ A⁻ᵀ l, relative to its size. Two passes,
     /// four solves.
     pub(crate) fn force_error(&mut self, model: &Model<'_, R>) -> R {
         self.christoffel_force(model);
         let (c, motion) = (&self.placement.configuration(model), &mut self.velocity);
-        let force = &mut *self.forces.force;
-        let scale = force_scale(model, force, motion.momentum, motion.qd);
         let out = PassResult { rate: motion.rate, transposed: motion.transposed, gradient: motion.gradient };
         pair_pass(c, motion.qd, motion.density, motion.adjoint, &mut self.pairs, out);
         let factors = self.system.factors();
         factors.solve(motion.rate);
         factors.solve_transposed(motion.transposed);
-        flux_moments(c, motion.rate, force);
-        add_potential_moments(c, motion.transposed, R::TWO, force);
-        let difference = largest_force(model, force) * model.head.fluid_density;
-        if scale > R::zero() { difference / scale } else { R::zero() }
+        let difference = &mut *self.scratch.three;
+        flux_moments(c, motion.rate, difference);
+        add_potential_moments(c, motion.transposed, R::TWO, difference);
+        relative_force(model, difference, self.forces.force, motion.momentum, motion.qd) * model.head.fluid_density
     }
 
-    /// M_h against its transpose, column by column, rows and columns of rotations over the reach of their links. 6n solves.
+    /// M_h against its transpose, entry by entry, relative to the roots of the largest added masses of both links (of rotations over the
+    /// square of the reach). 9n solves.
     pub(crate) fn mass_error(&mut self, model: &Model<'_, R>) -> R {
-        let (mut asymmetry, mut size) = (R::zero(), R::zero());
-        let reaches = model.boundaries.iter().filter(|b| b.link.is_some()).map(|b| b.reach);
-        let lengths = reaches.flat_map(|reach| [R::one(), R::one(), reach]);
-        // Two vectors that `mass_column` does not use, lent to it and given back.
+        // Vectors that `mass_column` does not use, lent to it and given back.
         let (column, row) = (core::mem::take(&mut self.forces.force), core::mem::take(&mut self.scratch.other));
-        for (k, length) in lengths.enumerate() {
+        let sizes = core::mem::take(&mut self.scratch.three);
+        let links = model.boundaries.iter().filter(|b| b.link.is_some());
+        // √m of a translation, √m · reach of a rotation.
+        for (i, b) in links.enumerate() {
+            let mut mass = R::zero();
+            for (k, length) in [R::one(), R::one(), b.reach].into_iter().enumerate() {
+                self.mass_column(model, 3 * i + k, false, column);
+                mass = mass.max(at(column, 3 * i + k).abs() / (length * length));
+            }
+            let root = mass.sqrt();
+            put_three(sizes, i, complex(root, root), root * b.reach);
+        }
+        let mut asymmetry = R::zero();
+        for k in 0..sizes.len() {
             self.mass_column(model, k, false, column);
             self.mass_column(model, k, true, row);
-            size = size.max(largest_force(model, column) / length);
             axpy(row, -R::one(), column);
-            asymmetry = asymmetry.max(largest_force(model, row) / length);
+            let scales = sizes.iter().map(|s| *s * at(sizes, k));
+            let relative = row.iter().zip(scales).map(|(x, s)| if s > R::zero() { x.abs() / s } else { R::zero() });
+            asymmetry = relative.fold(asymmetry, R::max);
         }
-        (self.forces.force, self.scratch.other) = (column, row);
-        if size > R::zero() { asymmetry / size } else { R::zero() }
+        (self.forces.force, self.scratch.other, self.scratch.three) = (column, row, sizes);
+        asymmetry
     }
 }

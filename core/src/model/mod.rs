@@ -131,6 +131,8 @@ pub struct ModelHead<R> {
     pub(crate) force: ForceFormula,
     /// Relative error in space that the scene asks for; 0: none.
     pub(crate) tolerance: R,
+    /// Whether to go on above a bound of 1.
+    pub(crate) allow_unresolved: bool,
     /// Nodes on walls; they come first.
     pub(crate) wall_nodes: usize,
     pub(crate) walls_at: usize,

@@ -4,26 +4,29 @@
 
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::geometry::curve::SHARP;
+use crate::geometry::curve::{SHARP, distinct};
 #[cfg(feature = "alloc")]
 use crate::scene::{Body, Link, Scene, Wall};
 use crate::scene::{Description, Quadrature, Shape, each_link};
 
 /// Tolerance in space of automatic nodes when the scene asks for none.
-pub const DEFAULT_TOLERANCE: f64 = 1e-8;
+pub const DEFAULT_TOLERANCE: f64 = 1e-6;
+
+/// Bound of the relative error in space that is noticed where the scene asks for no tolerance.
+pub const NOTICED_BOUND: f64 = 1e-3;
 
 /// The tolerance that automatic nodes aim at: the scene's, or [`DEFAULT_TOLERANCE`], or what the precision allows.
 pub(crate) fn target<R: Real>(asked: Option<R>) -> R {
     asked.unwrap_or(R::lit(DEFAULT_TOLERANCE).max(R::lit(1e4) * R::EPSILON))
 }
 
-/// The tolerance that the scene asks for; 0 if none: no node count is automatic and no tolerance is given.
-pub(crate) fn asked<R: Real, S: Description<R>>(scene: &S) -> R {
-    let tolerance = scene.settings().tolerance;
-    if tolerance.is_some() || automatic(scene) { target(tolerance) } else { R::zero() }
+/// The bound of the relative error above which there is a notice.
+pub(crate) fn noticed<R: Real>(asked: Option<R>) -> R {
+    asked.unwrap_or(R::lit(NOTICED_BOUND))
 }
 
 /// Whether some node count is automatic.
+#[cfg(feature = "alloc")]
 pub(crate) fn automatic<R: Real, S: Description<R>>(scene: &S) -> bool {
     scene.tank().is_some_and(|w| w.nodes == 0)
         || (0..scene.obstacle_count()).any(|i| scene.obstacle(i).is_some_and(|w| w.nodes == 0))
@@ -70,6 +73,7 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
             if plain { corners.max(flanks) } else { corners * (1.0 + 0.25 * Real::ln(ratio(width, height))) }
         }
         Shape::Polygon { vertices, radius } => {
+            let vertices = distinct(vertices);
             let sides = || vertices.iter().zip(vertices.iter().cycle().skip(1));
             let length = |(a, b): (&[R; 2], &[R; 2])| (b[0] - a[0]).hypot(b[1] - a[1]).to_f64();
             let short = sides().map(length).fold(f64::MAX, f64::min);
@@ -77,7 +81,7 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
             let blunt = if vertices.len() < 4 { 1.6 } else { 1.0 };
             blunt * vertices.len() as f64 * corner(digits, radius.map_or(SHARP, |r| r.to_f64() / short))
         }
-        Shape::Curve { points } => points.len() as f64 * (1.0 + 0.2 * digits),
+        Shape::Curve { points } => distinct(points).len() as f64 * (1.0 + 0.2 * digits),
     };
     let count = own.max(neighbours).min(MOST as f64);
     // NaN, of a shape that is refused later, counts as 0.
@@ -98,15 +102,16 @@ fn ratio<R: Real>(a: R, b: R) -> f64 {
     (a.max(b) / a.min(b)).clamp(1.0, 1e6)
 }
 
-/// A scene whose automatic node counts are multiplied.
+/// A scene whose automatic node counts were compared with its start (feature `alloc`): it describes the same with counts that are given.
 #[cfg(feature = "alloc")]
-pub(crate) struct Finer<'s, S> {
+pub struct Resolved<'s, S> {
     pub(crate) scene: &'s S,
+    /// By which the counts of the rule are multiplied.
     pub(crate) factor: f64,
 }
 
 #[cfg(feature = "alloc")]
-impl<S> Finer<'_, S> {
+impl<S> Resolved<'_, S> {
     fn nodes<R: Real>(&self, given: usize, shape: &Shape<'_, R>) -> usize
     where
         S: Description<R>,
@@ -127,11 +132,9 @@ impl<S> Finer<'_, S> {
 }
 
 #[cfg(feature = "alloc")]
-impl<R: Real, S: Description<R>> Description<R> for Finer<'_, S> {
+impl<R: Real, S: Description<R>> Description<R> for Resolved<'_, S> {
     fn settings(&self) -> Scene<'_, R> {
-        let settings = self.scene.settings();
-        // No count is automatic any more, but the tolerance is asked for as before.
-        Scene { tolerance: Some(target(settings.tolerance)), ..settings }
+        self.scene.settings()
     }
     fn tank(&self) -> Option<Wall<'_, R>> {
         self.scene.tank().map(|w| self.wall(w))

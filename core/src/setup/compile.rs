@@ -164,7 +164,7 @@ fn head<R: Real, S: Description<R>>(
         gravity: settings.gravity != R::zero(),
         repulsion: settings.repulsion.is_some_and(|r| r.epsilon != R::zero()),
         circulation: traits.circulation,
-        tolerance: crate::setup::automatic_nodes::asked(scene).to_f64(),
+        tolerance: crate::setup::automatic_nodes::noticed(settings.tolerance).to_f64(),
         model_bytes: layout.reals.saturating_mul(size_of::<R>()),
         ..Plan::default()
     };
@@ -176,7 +176,8 @@ fn head<R: Real, S: Description<R>>(
         repulsion: settings.repulsion.filter(|r| r.epsilon != R::zero()),
         gyroscopic: traits.circulation && settings.circulation == CirculationModel::Full,
         force: settings.force,
-        tolerance: crate::setup::automatic_nodes::asked(scene),
+        tolerance: crate::setup::automatic_nodes::noticed(settings.tolerance),
+        allow_unresolved: settings.allow_unresolved,
         wall_nodes: layout.wall_nodes,
         walls_at: layout.walls_at,
         walls_regular_at: layout.walls_regular_at,

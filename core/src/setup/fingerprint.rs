@@ -60,6 +60,7 @@ fn settings<R: Real>(d: &mut Digest, scene: &Scene<'_, R>) {
         force,
         quadrature,
         tolerance,
+        allow_unresolved,
         shortcuts,
     } = *scene;
     reals(d, [fluid_density, gravity]);
@@ -77,6 +78,7 @@ fn settings<R: Real>(d: &mut Digest, scene: &Scene<'_, R>) {
         Quadrature::Plain => 1,
     });
     optional(d, tolerance, |d, x| d.real(x));
+    d.count(usize::from(allow_unresolved));
     d.count(usize::from(shortcuts));
 }
 
@@ -353,6 +355,7 @@ mod tests {
             force: c.pick(ForceFormula::ExactGradient, ForceFormula::Boundary),
             quadrature: c.pick(Quadrature::Graded, Quadrature::Plain),
             tolerance: c.pick(tolerance, None),
+            allow_unresolved: c.pick(true, false),
             shortcuts: c.pick(true, false),
         };
         (fingerprint(&scene), c.given)

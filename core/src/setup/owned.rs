@@ -5,7 +5,7 @@ use crate::base::status::Result;
 use crate::model::boundary::BoundaryRecord;
 use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scene::Description;
-use crate::setup::automatic_nodes::{Finer, automatic, target};
+use crate::setup::automatic_nodes::{Resolved, automatic, target};
 use crate::setup::compile::ModelMemory;
 use crate::simulation::sim::{Sim, SimHead};
 use crate::simulation::state::Method;
@@ -22,11 +22,16 @@ pub struct ModelBuf<R> {
 }
 
 impl<R: Real> ModelBuf<R> {
-    /// Compiles a scene.
+    /// Compiles a scene; automatic node counts are those that its start needs (see [`Resolved::of`]).
     ///
     /// # Errors
     /// As [`Model::init`].
     pub fn new(scene: &impl Description<R>) -> Result<Self> {
+        if automatic(scene) { ModelBuf::compiled(&Resolved::of(scene)?) } else { ModelBuf::compiled(scene) }
+    }
+
+    /// Compiles a scene with the counts that its description gives.
+    fn compiled(scene: &impl Description<R>) -> Result<Self> {
         let need = Model::requirement(scene)?;
         let mut links = vec![LinkRecord::default(); need.links];
         let mut coordinates = vec![CoordinateRecord::default(); need.coordinates];
@@ -42,39 +47,44 @@ impl<R: Real> ModelBuf<R> {
         Ok(ModelBuf { head, links, coordinates, boundaries, reals })
     }
 
-    /// Compiles a scene, and compares the error indicators of its start with its tolerance: automatic node counts that do not
-    /// meet it are raised up to four times, and those kept that come nearest. Costs an evaluation for each attempt.
-    ///
-    /// # Errors
-    /// As [`Model::init`].
-    pub fn resolved(scene: &impl Description<R>) -> Result<Self> {
-        let mut best = Arc::new(ModelBuf::new(scene)?);
-        if !automatic(scene) {
-            return Ok(Arc::unwrap_or_clone(best));
-        }
-        let error = |model: &Arc<ModelBuf<R>>| {
-            let sim = SimBuf::new(model.clone(), Method::Rk4 { step: R::one() });
-            // What keeps a simulation from starting is told when one is made.
-            sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound())
-        };
-        let asked = target(scene.settings().tolerance);
-        let mut least = error(&best);
-        for factor in [1.25, 1.5, 2.0, 3.0, 4.0] {
-            if least <= asked {
-                break;
-            }
-            let model = Arc::new(ModelBuf::new(&Finer { scene, factor })?);
-            let error = error(&model);
-            if error < least {
-                (best, least) = (model, error);
-            }
-        }
-        Ok(Arc::unwrap_or_clone(best))
-    }
-
     /// The model's view.
     pub fn view(&self) -> Model<'_, R> {
         Model::view(&self.head, &self.links, &self.coordinates, &self.boundaries, &self.reals)
+    }
+}
+
+impl<'s, S> Resolved<'s, S> {
+    /// Compares the bound of the error at the start of a scene with its tolerance: automatic node counts that do not meet it are raised
+    /// up to four times, as long as that helps, and those kept that come nearest. Costs a model and an evaluation for each attempt, and
+    /// nothing if no count is automatic.
+    ///
+    /// # Errors
+    /// As [`Model::init`].
+    pub fn of<R: Real>(scene: &'s S) -> Result<Self>
+    where
+        S: Description<R>,
+    {
+        let mut best = Resolved { scene, factor: 1.0 };
+        if !automatic(scene) {
+            return Ok(best);
+        }
+        let asked = target(scene.settings().tolerance);
+        let (mut least, mut in_vain) = (R::MAX, 0);
+        for factor in [1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
+            let sim =
+                SimBuf::new(Arc::new(ModelBuf::compiled(&Resolved { scene, factor })?), Method::Rk4 { step: R::one() });
+            // What keeps a simulation from starting is told when one is made.
+            let error = sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound());
+            // What more nodes do not halve is rounding, or takes more than there may be.
+            in_vain = if error > R::HALF * least { in_vain + 1 } else { 0 };
+            if error < least {
+                (best, least) = (Resolved { scene, factor }, error);
+            }
+            if least <= asked || in_vain == 2 {
+                break;
+            }
+        }
+        Ok(best)
     }
 }
 

@@ -73,7 +73,7 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As an evaluation: `Contact`, `Singular`, `NonFiniteState`.
     pub fn energy(&mut self) -> Result<Energy<R>> {
-        self.refresh()?;
+        self.evaluated()?;
         let (model, head) = (self.model, self.model.head);
         let c = &self.evaluation.placement.configuration(&model);
         let kinetic_fluid = self
@@ -123,7 +123,7 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// As [`Sim::energy`].
     pub fn impulse(&mut self) -> Result<[R; 3]> {
-        self.refresh()?;
+        self.evaluated()?;
         let mut total = self.evaluation.total_impulse(&self.model);
         if !self.model.head.plan.circulation {
             return Ok(total);
@@ -157,7 +157,7 @@ impl<R: Real> Sim<'_, R> {
     pub fn joint_torques(&mut self, torque: &mut [R], power: &mut [R]) -> Result<()> {
         self.expect(torque.len(), self.model.joint_count())?;
         self.expect(power.len(), self.model.joint_count())?;
-        self.refresh()?;
+        self.evaluated()?;
         let model = self.model;
         self.evaluation.drive_forces(&model);
         let now = Moment { t: self.progress.time, after: !self.progress.arrived };
@@ -179,7 +179,7 @@ impl<R: Real> Sim<'_, R> {
     /// `Length`, and as [`Sim::energy`].
     pub fn accelerations(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
-        self.refresh()?;
+        self.evaluated()?;
         copy(out, self.evaluation.forces.qdd);
         Ok(())
     }
@@ -191,7 +191,7 @@ impl<R: Real> Sim<'_, R> {
     pub fn added_mass(&mut self, out: &mut [R]) -> Result<()> {
         let n = self.rows();
         self.expect(out.len(), n * n)?;
-        self.refresh()?;
+        self.evaluated()?;
         self.evaluation.added_mass(&self.model, out);
         Ok(())
     }
@@ -213,7 +213,7 @@ impl<R: Real> Sim<'_, R> {
     /// `Length`, and as [`Sim::energy`].
     pub fn christoffel(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
-        self.refresh()?;
+        self.evaluated()?;
         let model = self.model;
         self.evaluation.christoffel_force(&model);
         copy(out, self.evaluation.forces.force);
@@ -228,7 +228,7 @@ impl<R: Real> Sim<'_, R> {
     pub fn christoffel_tensor(&mut self, out: &mut [R]) -> Result<()> {
         let n = self.rows();
         self.expect(out.len(), n * n * n)?;
-        self.refresh()?;
+        self.evaluated()?;
         let model = self.model;
         // Γ(e_i, e_i) first, then 2 Γ(e_i, e_j) = Γ(e_i + e_j, e_i + e_j) − Γ(e_i, e_i) − Γ(e_j, e_j).
         for (i, j) in (0..n).map(|i| (i, i)).chain((0..n).flat_map(|j| (0..j).map(move |i| (i, j)))) {
@@ -257,7 +257,7 @@ impl<R: Real> Sim<'_, R> {
     /// `Length`, and as [`Sim::energy`].
     pub fn buoyancy(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
-        self.refresh()?;
+        self.evaluated()?;
         out.fill(R::zero());
         buoyancy::add_gradient(&self.model, Poses(self.evaluation.placement.poses), out);
         Ok(())
@@ -269,7 +269,7 @@ impl<R: Real> Sim<'_, R> {
     /// `Length`, and as [`Sim::energy`].
     pub fn repulsion(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
-        self.refresh()?;
+        self.evaluated()?;
         out.fill(R::zero());
         if let Some(law) = self.model.head.repulsion {
             repulsion::add_gradient(&self.evaluation.placement.configuration(&self.model), law, out);
@@ -284,7 +284,7 @@ impl<R: Real> Sim<'_, R> {
     /// `Length`, and as [`Sim::energy`].
     pub fn circulation_gradient(&mut self, out: &mut [R]) -> Result<()> {
         self.expect(out.len(), self.rows())?;
-        self.refresh()?;
+        self.evaluated()?;
         out.fill(R::zero());
         if self.circulates() {
             let model = self.model;
@@ -301,7 +301,7 @@ impl<R: Real> Sim<'_, R> {
     pub fn gyroscopic(&mut self, out: &mut [R]) -> Result<()> {
         let n = self.rows();
         self.expect(out.len(), n * n)?;
-        self.refresh()?;
+        self.evaluated()?;
         out.fill(R::zero());
         let model = self.model;
         if !model.head.gyroscopic {

@@ -41,8 +41,8 @@ impl<R: Real> Sim<'_, R> {
     /// * `DriveUnresolved`: a drive did something within a step that its ends do not tell (a step of `rk4` or `abm4` longer than a quarter
     ///   of a period, an eighth of a window's ramp, or with rows of a table in it that leave the straight line; a jump within a step), or
     ///   a motion jumped in its position or speed. The longest step that would have seen it (0: none) and the joint or body.
-    /// * `Unresolved`: the scene's tolerance in space was not met (before the first step: at the state shown); the bound of the
-    ///   error and the boundaries that are now closest to each other. Never if none was asked for. O(N²) for that gap.
+    /// * `Unresolved`: the bound of the error in space exceeded the scene's tolerance, or a thousandth if none was asked for (before the
+    ///   first step: at the state shown); the bound and the boundaries that are now closest to each other. O(N²) for that gap.
     /// * `EnergyDrift`: as [`Sim::energy_drift`] found it when an energy was asked for last.
     pub fn notices(&mut self) -> [Option<(R, Error)>; 4] {
         let moved = self.progress.watch != Watch::Nothing;
@@ -66,9 +66,6 @@ impl<R: Real> Sim<'_, R> {
     /// The tolerance in space, if it was not met.
     fn unresolved(&mut self) -> Option<(R, Error)> {
         let asked = self.model.head.tolerance;
-        if asked == R::zero() {
-            return None;
-        }
         let bound = self.indicators().ok()?.bound();
         if bound <= asked {
             return None;
@@ -78,7 +75,26 @@ impl<R: Real> Sim<'_, R> {
         Some((time, self.gap().between.map_or(notice, |(a, b)| notice.at(a).with(b))))
     }
 
-    /// Error indicators at the state shown, from all of the added mass. 6n + 7 solves for n links, two passes over the pairs.
+    /// Indicators of the last evaluation, refused if they say nothing of the result any more. One solve.
+    pub(crate) fn bounded(&mut self) -> Result<Resolution<R>> {
+        let model = self.model;
+        let here = self.evaluation.resolution(&model);
+        // NaN is no bound.
+        if here.bound() <= R::one() || model.head.allow_unresolved {
+            return Ok(here);
+        }
+        let worst = self.evaluation.least_resolved(&model);
+        let error = Error::new(Status::BoundExceeded).of("bound", here.bound().to_f64());
+        Err(worst.map_or(error, |b| error.at(b.place).beside(b.nodes as f64)))
+    }
+
+    /// An evaluation of the state shown, if it can be trusted at all.
+    pub(crate) fn evaluated(&mut self) -> Result<()> {
+        self.refresh()?;
+        self.bounded().map(|_| ())
+    }
+
+    /// Error indicators at the state shown, from all of the added mass. 9n + 7 solves for n links, two passes over the pairs.
     ///
     /// # Errors
     /// As [`Sim::energy`].

@@ -131,9 +131,7 @@ impl<R: Real> Sim<'_, R> {
     }
 
     /// Keeps the indicators of a step's last evaluation if they are the largest of this call.
-    fn watch(&mut self, t: R) {
-        let model = self.model;
-        let here = self.evaluation.resolution(&model);
+    fn watch(&mut self, t: R, here: Resolution<R>) {
         if self.progress.watch != Watch::Present {
             (self.progress.worst, self.progress.worst_time) = (Resolution::default(), t);
             self.progress.missed = Missed::nothing();
@@ -181,19 +179,23 @@ impl<R: Real> Sim<'_, R> {
         let before = self.progress.arrived;
         let arrived = stepped.and_then(|()| {
             (self.progress.time, self.progress.arrived) = (next, true);
-            self.show_checked()
+            self.show_checked()?;
+            self.bounded()
         });
-        if let Err(e) = arrived {
-            copy(self.state.y, self.state.saved);
-            (self.progress.time, self.progress.arrived) = (t, before);
-            if made {
-                self.forget_steps();
+        let here = match arrived {
+            Ok(here) => here,
+            Err(e) => {
+                copy(self.state.y, self.state.saved);
+                (self.progress.time, self.progress.arrived) = (t, before);
+                if made {
+                    self.forget_steps();
+                }
+                self.progress.counters.rejected += 1;
+                self.show()?;
+                return Err(e);
             }
-            self.progress.counters.rejected += 1;
-            self.show()?;
-            return Err(e);
-        }
-        self.watch(next);
+        };
+        self.watch(next, here);
         self.note_drives(t, h, moved);
         self.progress.counters.steps += 1;
         self.note_error(regular, next, h);
@@ -251,7 +253,18 @@ impl<R: Real> Sim<'_, R> {
         let outcome = adams.step(&mut system, t_stop, self.state.integrator);
         self.progress.adams = adams;
         outcome.map_err(|e| self.contact_before(e))?;
-        self.watch(adams.time());
+        match self.bounded() {
+            Ok(here) => self.watch(adams.time(), here),
+            Err(e) => {
+                // Back to where the step began, unless less than that is shown.
+                let before = adams.time() - adams.last_step();
+                if before > self.progress.time {
+                    self.show_adams(before)?;
+                }
+                self.restart();
+                return Err(e);
+            }
+        }
         self.note_drives(adams.time() - adams.last_step(), adams.last_step(), moved);
         self.note_error(true, adams.time(), adams.last_step());
         let y = self.progress.adams.state(self.state.integrator);

@@ -250,7 +250,8 @@ pub struct SceneDef<R> {
     /// NEKTON_QUADRATURE_...
     pub quadrature: i32,
     /// Relative error in space that is asked for: boundaries of 0 nodes get as many as it takes, and a step that exceeds it
-    /// returns NEKTON_N_UNRESOLVED. 0: 1e-8 (single precision: 1.2e-3) if some boundary has 0 nodes, else none is asked for.
+    /// returns NEKTON_N_UNRESOLVED. 0: boundaries of 0 nodes get as many as 1e-6 takes (single precision: 1.2e-3), and a step whose
+    /// bound exceeds 1e-3 returns NEKTON_N_UNRESOLVED.
     pub tolerance: R,
     /// 1: use what symmetry makes unnecessary (a lone body, a lone swimmer); 0: only to cross-check.
     pub shortcuts: i32,
@@ -264,6 +265,10 @@ pub struct SceneDef<R> {
     pub bodies: *const BodyDef<R>,
     /// Number of bodies, >= 1.
     pub body_count: usize,
+    /// 1: go on where the bound of the relative error in space exceeds 1; 0: that is refused (NEKTON_E_BOUND_EXCEEDED).
+    pub allow_unresolved: i32,
+    /// 0.
+    pub reserved: i32,
 }
 
 /// Classical Runge-Kutta of order 4, fixed step, 4 evaluations a step.

@@ -80,6 +80,24 @@ fn turned<R: Real>(points: &[[R; 2]], clockwise: bool) -> impl Fn(usize) -> Comp
     move |k| point(points.as_flattened(), if clockwise && k > 0 { n.saturating_sub(k) } else { k })
 }
 
+/// Points without what repeats the first or the one before at the end, to a millionth of their mean distance. O(n) if the last does.
+pub(crate) fn distinct<R: Real>(points: &[[R; 2]]) -> &[[R; 2]] {
+    let mut rest = points;
+    while let (&[first, .., before, last], true) = (rest, rest.len() > 3) {
+        let distance = |a: [R; 2], b: [R; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+        let nearest = distance(last, first).min(distance(last, before));
+        let way = || points.iter().zip(points.iter().skip(1)).fold(R::zero(), |s, (a, b)| s + distance(*a, *b));
+        if nearest > R::zero()
+            && (nearest > R::lit(1e-3) * distance(first, before)
+                || nearest > R::lit(1e-6) * way() / R::count(points.len()))
+        {
+            break;
+        }
+        rest = rest.get(..rest.len() - 1).unwrap_or(rest);
+    }
+    rest
+}
+
 fn rectangle<R: Real>(width: R, height: R) -> [[R; 2]; 4] {
     let (x, y) = (width * R::HALF, height * R::HALF);
     [[-x, -y], [x, -y], [x, y], [-x, y]]
@@ -133,6 +151,22 @@ impl<R: Real> Outline<R> {
 }
 
 impl<R: Real> Shape<'_, R> {
+    /// The same without a repeated last point.
+    fn closed(&self) -> Self {
+        match *self {
+            Shape::Polygon { vertices, radius } => Shape::Polygon { vertices: distinct(vertices), radius },
+            Shape::Curve { points } => Shape::Curve { points: distinct(points) },
+            other => other,
+        }
+    }
+
+    fn given_points(&self) -> usize {
+        match *self {
+            Shape::Polygon { vertices: points, .. } | Shape::Curve { points } => points.len(),
+            _ => 0,
+        }
+    }
+
     fn sizes(&self) -> Result<Sizes> {
         let polygon = |vertices: &[[R; 2]], radius: Option<R>| {
             let n = vertices.len();
@@ -145,7 +179,7 @@ impl<R: Real> Shape<'_, R> {
                 scratch: samples.saturating_mul(2).saturating_add(boxes_len(samples)),
             })
         };
-        match *self {
+        match self.closed() {
             Shape::Ellipse { .. } => Ok(Sizes { own: 0, rungs: 0, ladders: 0, tips: 2, scratch: 0 }),
             Shape::Star { lobes, .. } => {
                 Ok(Sizes { own: 6, rungs: 0, ladders: 0, tips: lobes.min(MOST_TIPS), scratch: 0 })
@@ -186,12 +220,20 @@ impl<R: Real> Shape<'_, R> {
     ///
     /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
     /// of the shortest side; from 32 roundings of the perimeter up to where two arcs no longer fit on a side.
-    /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`.
+    /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`; a repeated last point is dropped,
+    /// with the notice `PointRepeated`.
     /// Errors name the measure, corner ("vertex") or point: `NotFinite`, `BadShape`, `OutOfRange`,
     /// `SelfIntersection`; `MemoryTooSmall`.
     ///
     /// Cost: O(1) for ellipses, O(corners² rungs) for polygons, O(points³) for curves.
     pub(crate) fn compile(&self, store: &mut [R], scratch: &mut [R]) -> Result<(Outline<R>, Status)> {
+        let closed = self.closed();
+        let (outline, status) = closed.compile_closed(store, scratch)?;
+        let repeated = closed.given_points() < self.given_points();
+        Ok((outline, if repeated { Status::PointRepeated } else { status }))
+    }
+
+    fn compile_closed(&self, store: &mut [R], scratch: &mut [R]) -> Result<(Outline<R>, Status)> {
         self.validate()?;
         let sizes = self.sizes()?;
         if store.len() < self.store_len()? || scratch.len() < self.scratch_len()? {

@@ -22,6 +22,7 @@ mod through_points;
 
 pub use ellipse::Ellipse;
 pub use fourier::Fourier;
+pub(crate) use from_shape::distinct;
 pub use polygon::{Polygon, SHARP};
 
 use crate::base::complex::{Complex, cabs, complex, dot};
