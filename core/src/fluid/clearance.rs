@@ -3,8 +3,8 @@
 //!
 //! An arc of half-width w about the parameter m is γ(m) + γ′(m) u, |u| ≤ w, but for w²/2 times the largest |γ″| on it. The
 //! difference of two such arcs on their way, over an interval of time, is a point plus three segments plus what
-//! the second derivatives leave: its distance from 0 has a lower bound. Whatever this does not settle is halved, the
-//! longest part first. Halves are dyadic, so the way back is kept as one byte a level, and nothing else.
+//! the second derivatives leave: its distance from 0 has a lower bound. Where this does not settle it, that part is halved
+//! that takes most from the bound. Halves are dyadic, so the way back is kept as one byte a level, and nothing else.
 //!
 //! Tested by `tests/contact`, `tests/driving`, `tests/bad_input`.
 
@@ -38,14 +38,22 @@ fn norm<R: Real>(z: Complex<R>) -> R {
     dot(z, z).sqrt()
 }
 
-/// A lower bound of the distance from 0 of c plus the segments ±g: along c, and across each segment.
-fn apart<R: Real>(c: Complex<R>, segments: &[Complex<R>]) -> R {
-    let along = |n: Complex<R>| {
-        let reach = segments.iter().fold(R::zero(), |sum, g| sum + dot(*g, n).abs());
-        let square = dot(n, n);
-        if square > R::zero() { (dot(c, n).abs() - reach) / square.sqrt() } else { R::zero() }
-    };
-    segments.iter().fold(along(c), |most, g| most.max(along(perp(*g))))
+/// A lower bound of the distance from 0 of c plus the segments ±g, each thickened: along c, and across each segment; and what
+/// each of them takes from it. Directions along which c itself is not beyond `limit` cannot help and are left out.
+fn apart<R: Real, const N: usize>(c: Complex<R>, parts: [(Complex<R>, R); N], limit: R) -> (R, [R; N]) {
+    let mut best = (-R::MAX, parts.map(|(g, off)| norm(g) + off));
+    for n in core::iter::once(c).chain(parts.into_iter().map(|(g, _)| perp(g))) {
+        let size = norm(n);
+        let far = dot(c, n).abs() / size;
+        if far > limit {
+            let taken = parts.map(|(g, off)| dot(g, n).abs() / size + off);
+            let left = taken.iter().fold(far, |left, part| left - *part);
+            if left > best.0 {
+                best = (left, taken);
+            }
+        }
+    }
+    best
 }
 
 /// An arc: its middle, half its tangent line, and how far it may be off that.
@@ -87,7 +95,7 @@ pub(crate) fn encloses<R: Real>(placed: &Placed<'_, R>, store: &[R], z: Complex<
     while done < R::one() {
         let arc = arcs.at(done + w, w);
         // On the outline itself, to rounding, either answer is right.
-        if apart(arc.middle - z, &[arc.along]) <= arc.off && w > R::EPSILON {
+        if apart(arc.middle - z, [(arc.along, arc.off)], R::zero()).0 <= R::zero() && w > R::EPSILON {
             w *= R::HALF;
             continue;
         }
@@ -173,14 +181,14 @@ struct Found<R> {
 }
 
 /// Looks at all pairs of points, at all times if they move, until one is closer than `enough`. Left out are boxes farther
-/// than the least distance found times `keep`.
+/// than the least distance found times `share` less `digits`.
 fn search<R: Real>(
     a: &Placed<'_, R>,
     b: &Placed<'_, R>,
     motions: Option<[Motion<R>; 2]>,
     store: &[R],
     mut found: Found<R>,
-    [enough, keep]: [R; 2],
+    [enough, share, digits]: [R; 3],
 ) -> Found<R> {
     let (first, second) = (Arcs::of(a, store), Arcs::of(b, store));
     let mut walk = Walk::new(motions.is_some());
@@ -204,8 +212,10 @@ fn search<R: Real>(
         let between = start + drift * time + (x - y);
         let distance = norm(between);
         if distance < found.distance {
+            // Much closer: another valley, whose bottom Newton's method knows.
+            let valley = motions.is_none() && distance < found.distance * R::lit(0.9);
             found = Found { s: u * R::TAU, t: v * R::TAU, distance, settled: true };
-            if motions.is_none() {
+            if valley {
                 let (s, t, distance, _) = refine(a, b, store, found.s, found.t, distance, false);
                 found = Found { s, t, distance, settled: true };
             }
@@ -220,11 +230,11 @@ fn search<R: Real>(
         let turned = (by_a * by_a * a.record.reach + by_b * by_b * b.record.reach) * R::HALF
             + by_a * (length_a + R::TWO * p.off)
             + by_b * (length_b + R::TWO * q.off);
-        let least = apart(between, &[dx, dy, moved]) - (p.off + q.off + turned);
+        let limit = found.distance * share - digits;
+        let (least, [ka, kb, kt]) = apart(between, [(dx, p.off), (dy, q.off), (moved, turned)], limit);
         let mut next = false;
-        if least <= found.distance * keep {
-            let (a, b, c) = (length_a + p.off, length_b + q.off, norm(moved) + turned);
-            next = walk.halve(if c > a.max(b) { 2 } else { usize::from(b > a) });
+        if least <= limit {
+            next = walk.halve(if kt > ka.max(kb) { 2 } else { usize::from(kb > ka) });
             // Too fine to be told from contact.
             if !next && found.distance <= enough {
                 found.distance = R::zero();
@@ -248,7 +258,7 @@ pub(crate) fn meet<R: Real>(
     limit: R,
 ) -> bool {
     let start = Found { s: R::zero(), t: R::zero(), distance: limit, settled: true };
-    let found = search(a, b, motions, store, start, [limit, R::HALF]);
+    let found = search(a, b, motions, store, start, [limit, R::HALF, R::zero()]);
     found.distance < limit || !found.settled
 }
 
@@ -261,7 +271,8 @@ pub(crate) fn gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) ->
     let limit = touching(a, b);
     let mut found = Found { s, t, distance, settled: true };
     if distance > limit {
-        found = search(a, b, None, store, found, [limit, R::one() - R::lit(1e-9).max(R::lit(8.0) * R::EPSILON)]);
+        let digits = R::lit(32.0) * R::EPSILON * a.record.reach.max(b.record.reach);
+        found = search(a, b, None, store, found, [limit, R::one() - R::lit(1e-9), digits]);
     }
     let crossing = found.distance <= limit;
     let (_, _, distance, sign) = refine(a, b, store, found.s, found.t, found.distance, crossing);
