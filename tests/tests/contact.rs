@@ -284,7 +284,9 @@ fn ten_thousand_placements_are_told_apart_as_by_brute_force() {
                 let z = turned(small.point(k as f64 / 64.0), angle);
                 most.max(-side * (z[0] * n[0] + z[1] * n[1]))
             });
-            let aim = small.size() * 10f64.powf(random.between(-7.0, 0.0)) * if random.chance(0.3) { -1.0 } else { 1.0 };
+            let depth = if random.chance(0.3) { -1.0 } else { 1.0 };
+            let slack = small.slack() + big.slack() + 2e-8 * small.size() + 2e-12;
+            let aim = depth * (2.0 * slack + small.size() * 10f64.powf(random.between(-7.0, 0.0)));
             let off = side * (support + aim);
             let place = [x[0] + off * n[0], x[1] + off * n[1], angle];
             let exact = gap(&small, place, &big, tank);
@@ -292,12 +294,13 @@ fn ten_thousand_placements_are_told_apart_as_by_brute_force() {
             state[..2].copy_from_slice(&world);
             state[2] = angle + turn;
             let told = sim.set_state(0.0, &state).map_err(|e| e.status);
-            let slack = small.slack() + big.slack() + 2e-8 * small.size() + 2e-13;
             if exact.abs() <= slack {
                 open += 1;
                 continue;
             }
-            let what = || format!("pair {pair}: {small:?} ({few}) at {place:?} in {big:?} ({many}), tank {tank}, gap {exact:e}");
+            let what = || {
+                format!("pair {pair}: {small:?} ({few}) at {place:?} in {big:?} ({many}), tank {tank}, gap {exact:e}")
+            };
             match (told, exact > 0.0) {
                 (Ok(()), true) => {
                     clear += 1;
@@ -357,12 +360,17 @@ fn a_fast_body_meets_what_is_on_its_way_and_nothing_else() {
         let start = at(0.0);
         let h = 0.1;
         let bodies = [
-            body(&one, [start[0], start[1], 0.3], [way[0] * travel / h, way[1] * travel / h, random.between(-9.0, 9.0)]),
+            body(
+                &one,
+                [start[0], start[1], 0.3],
+                [way[0] * travel / h, way[1] * travel / h, random.between(-9.0, 9.0)],
+            ),
             body(&other, [0.0; 3], [0.0, 0.0, turn / h]),
         ];
         let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, Method::Rk4 { step: h });
         let told = sim.view().step().map_err(|e| e.status);
-        let what = format!("{scene_number}: radius {radius:e} past {big:?}, travel {travel}, turn {turn}, gap {nearest:e}");
+        let what =
+            format!("{scene_number}: radius {radius:e} past {big:?}, travel {travel}, turn {turn}, gap {nearest:e}");
         assert_eq!(told, if nearest > 0.0 { Ok(()) } else { Err(Status::Contact) }, "{what}");
         if nearest > 0.0 { clear += 1 } else { met += 1 }
     }
@@ -383,7 +391,8 @@ fn beside(nodes: [usize; 2], check: impl Fn(&Scene<'_, f64>)) {
 
 #[test]
 fn a_body_of_a_ten_thousandth_beside_a_large_one_does_not_overlap_it_whatever_the_nodes() {
-    let exact = gap(&Kind::Ellipse(1e-4, 5e-5), [0.26752632654352454, 0.481977193350832, 0.4], &Kind::Ellipse(1.0, 0.5), false);
+    let exact =
+        gap(&Kind::Ellipse(1e-4, 5e-5), [0.26752632654352454, 0.481977193350832, 0.4], &Kind::Ellipse(1.0, 0.5), false);
     for large in (8..84).step_by(2) {
         for small in [16, 24, 64] {
             beside([large, small], |scene| {
@@ -410,4 +419,3 @@ fn a_body_of_a_ten_thousandth_moves_away_from_a_large_one_without_contact() {
         }
     });
 }
-

@@ -120,7 +120,7 @@ struct Walk<R> {
     half: [R; 3],
     /// What has changed since it was looked at.
     stale: [bool; 3],
-    /// The way here: which part was halved, + 3 in its second half.
+    /// The way here: which part was halved, + 4 if its upper half came first, + 8 in the half that came second.
     way: [u8; LEVELS],
     level: usize,
 }
@@ -145,13 +145,13 @@ impl<R: Real> Walk<R> {
         }
     }
 
-    /// Goes to the first half of a part, if the digits allow.
-    fn halve(&mut self, part: usize) -> bool {
+    /// Goes to the upper or lower half of a part, if the digits allow.
+    fn halve(&mut self, part: usize, upper: bool) -> bool {
         let fine = self.half.get(part).is_none_or(|half| *half <= R::TWO * R::EPSILON);
         let Some(step) = self.way.get_mut(self.level).filter(|_| !fine) else { return false };
-        *step = part as u8;
+        *step = part as u8 + if upper { 4 } else { 0 };
         self.level += 1;
-        self.change(part, R::HALF, -R::one());
+        self.change(part, R::HALF, if upper { R::one() } else { -R::one() });
         true
     }
 
@@ -159,13 +159,14 @@ impl<R: Real> Walk<R> {
     fn next(&mut self) -> bool {
         while let Some(level) = self.level.checked_sub(1) {
             let Some(step) = self.way.get_mut(level) else { return false };
-            let part = usize::from(*step);
-            if part < 3 {
-                *step += 3;
-                self.change(part, R::one(), R::TWO);
+            let (part, second) = (usize::from(*step & 3), *step & 8 != 0);
+            let back = if *step & 4 != 0 { -R::one() } else { R::one() };
+            if !second {
+                *step |= 8;
+                self.change(part, R::one(), R::TWO * back);
                 return true;
             }
-            self.change(part - 3, R::TWO, -R::one());
+            self.change(part, R::TWO, -back);
             self.level = level;
         }
         false
@@ -234,7 +235,13 @@ fn search<R: Real>(
         let (least, [ka, kb, kt]) = apart(between, [(dx, p.off), (dy, q.off), (moved, turned)], limit);
         let mut next = false;
         if least <= limit {
-            next = walk.halve(if kt > ka.max(kb) { 2 } else { usize::from(kb > ka) });
+            let (part, way) = match kt > ka.max(kb) {
+                true => (2, moved),
+                false if kb > ka => (1, -dy),
+                false => (0, dx),
+            };
+            // The closer half first.
+            next = walk.halve(part, dot(between, way) < R::zero());
             // Too fine to be told from contact.
             if !next && found.distance <= enough {
                 found.distance = R::zero();
@@ -271,7 +278,7 @@ pub(crate) fn gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) ->
     let limit = touching(a, b);
     let mut found = Found { s, t, distance, settled: true };
     if distance > limit {
-        let digits = R::lit(32.0) * R::EPSILON * a.record.reach.max(b.record.reach);
+        let digits = R::lit(256.0) * R::EPSILON * a.record.reach.max(b.record.reach);
         found = search(a, b, None, store, found, [limit, R::one() - R::lit(1e-9), digits]);
     }
     let crossing = found.distance <= limit;

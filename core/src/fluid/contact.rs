@@ -60,8 +60,7 @@ fn coarse_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
 pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place, R)> {
     pairs(model, poses).find_map(|(i, j, a, b)| {
         let limit = touching(&a, &b);
-        let clear =
-            apart(&a, &b) > limit || coarse_gap(&a, &b) > limit || !meet(&a, &b, None, model.store, limit);
+        let clear = apart(&a, &b) > limit || coarse_gap(&a, &b) > limit || !meet(&a, &b, None, model.store, limit);
         if clear { None } else { Some((model.place(i), model.place(j), gap(&a, &b, model.store))) }
     })
 }
