@@ -275,7 +275,8 @@ pub(crate) fn gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) ->
     let (square, i, k) = closest_nodes(a, b);
     let (s, t) = (at(a.nodes.t, i), at(b.nodes.t, k));
     let (s, t, distance, _) = refine(a, b, store, s, t, square.sqrt(), false);
-    let limit = touching(a, b);
+    // What is not found to meet is farther apart than half of what counts as contact.
+    let limit = touching(a, b) * R::lit(0.49);
     let mut found = Found { s, t, distance, settled: true };
     if distance > limit {
         let digits = R::lit(256.0) * R::EPSILON * a.record.reach.max(b.record.reach);
