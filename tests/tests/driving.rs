@@ -403,14 +403,13 @@ fn a_state_that_is_set_is_shown_whatever_was_asked_before() {
 }
 
 #[test]
-fn a_slide_along_a_wall_is_followed_for_two_hundred_gaps() {
-    // Two plates, one of which slides at a constant gap. A path that cannot be followed is refused.
+fn a_slide_along_a_wall_is_followed_for_any_number_of_gaps() {
     let gap = 0.004;
     let plate = |width, angle| (Shape::Rectangle { width, height: 0.2, radius: Some(0.02) }, angle);
     let (long, _) = plate(4.0, 0.0);
     let small = [link(disc(0.1), 1.0, 16)];
     let obstacles = [wall(long, [0.0, -0.1], 0.0, 256)];
-    for (gaps, passes) in [(100.0, true), (199.5, true), (200.5, false), (300.0, false)] {
+    for gaps in [100.0, 300.0, 900.0] {
         let h = 0.1;
         let bodies = [body(&small, [-0.5 * gaps * gap, 0.1 + gap, 0.0], [gaps * gap / h, 0.0, 0.0])];
         let scene = Scene { obstacles: &obstacles, bodies: &bodies, ..Scene::new(0.0, 0.0) };
@@ -419,7 +418,7 @@ fn a_slide_along_a_wall_is_followed_for_two_hundred_gaps() {
         println!("{:e}", sim.gap().distance / gap - 1.0);
         let told = sim.step().err().map(|error| error.status);
         println!("{:e}", sim.gap().distance / gap - 1.0);
-        assert_eq!(told, (!passes).then_some(Status::Contact), "{gaps}");
+        assert_eq!(told, None, "{gaps}");
     }
 }
 

@@ -2,15 +2,14 @@
 //!
 //! Tested by `tests/bad_input`, `tests/driving`, `tests/extremes`.
 
-use crate::base::complex::{cabs, cis};
+use crate::base::complex::cabs;
 use crate::base::memory::{at, copy};
 use crate::base::scalar::Real;
 use crate::base::status::Place;
-use crate::fluid::gap::{Placed, apart, closest_nodes, encloses, signed_gap, size, touching};
-use crate::geometry::nodes::targets;
-use crate::geometry::pose::{Pose, Poses};
+use crate::fluid::clearance::{Motion, encloses, gap, meet, touching};
+use crate::fluid::gap::{Placed, apart, closest_nodes};
+use crate::geometry::pose::Poses;
 use crate::model::Model;
-use crate::model::boundary::BoundaryRecord;
 
 /// The smallest distance between two boundaries of which one moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -43,7 +42,7 @@ pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -
     let mut best = Gap { distance: R::one() / R::zero(), between: None };
     for (i, j, a, b) in pairs(model, poses) {
         if apart(&a, &b) < best.distance {
-            let distance = signed_gap(&a, &b, model.store);
+            let distance = gap(&a, &b, model.store);
             if distance < best.distance {
                 best = Gap { distance, between: Some((model.place(i), model.place(j))) };
             }
@@ -52,22 +51,17 @@ pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -
     best
 }
 
-/// The first pair that touches or overlaps (within 1e-8 of the smaller size), if any.
+/// A lower bound of the gap from the nodes: the outlines are nowhere farther from them than half a spacing. O(N_i N_j).
+fn coarse_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
+    closest_nodes(a, b).0.sqrt() - R::HALF * (a.record.spacing + b.record.spacing)
+}
+
+/// The first pair that touches or crosses, if any, and its gap.
 pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place, R)> {
     pairs(model, poses).find_map(|(i, j, a, b)| {
-        let limit = touching::<R>() * size(&a, &b);
-        if apart(&a, &b) > limit {
-            return None;
-        }
-        let (square, _, _) = closest_nodes(&a, &b);
-        let near = a.record.spacing.max(b.record.spacing);
-        // Nodes further apart than their spacing: the outlines cannot meet.
-        if square > near * near {
-            return None;
-        }
-        let gap = signed_gap(&a, &b, model.store);
-        let clear = gap > limit;
-        if clear { None } else { Some((model.place(i), model.place(j), gap)) }
+        let limit = touching(&a, &b);
+        let clear = apart(&a, &b) > limit || coarse_gap(&a, &b) > limit || !meet(&a, &b, None, model.store, limit);
+        if clear { None } else { Some((model.place(i), model.place(j), gap(&a, &b, model.store))) }
     })
 }
 
@@ -76,10 +70,10 @@ pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) 
 pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place)> {
     let all = || model.each_boundary().map(|(i, record, nodes)| (i, Placed { record, nodes, pose: poses.get(i) }));
     for (i, a) in all() {
-        // A node of `a` is where `a` is: within its reach.
+        // A point of `a` is where `a` is: within its reach.
         for (j, b) in all().filter(|(j, b)| *j != i && apart(&a, b) <= R::zero()) {
-            let Some(z) = targets(&a.nodes, a.pose, b.pose).next() else { continue };
-            let inside = cabs(z) <= b.record.reach && encloses(&b.nodes, z);
+            let z = b.pose.unturned(a.point(model.store, R::zero()) - b.pose.origin);
+            let inside = cabs(z) <= b.record.reach && encloses(&b, model.store, z);
             if b.record.sign > R::zero() && !inside {
                 return Some((model.place(i), Place::Tank));
             }
@@ -92,7 +86,7 @@ pub(crate) fn first_misplaced<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>
     for (i, a) in all().filter(|(_, a)| a.record.link.is_none()) {
         for (j, b) in all().filter(|(j, b)| *j > i && b.record.link.is_none()) {
             let inside_first = a.record.sign > R::zero();
-            if signed_gap(&a, &b, model.store) <= R::zero() {
+            if gap(&a, &b, model.store) <= R::zero() {
                 return Some(if inside_first {
                     (model.place(j), model.place(i))
                 } else {
@@ -114,8 +108,8 @@ pub(crate) fn set_anchor<R: Real>(anchor: &mut [R], poses: &[R], q: &[R]) {
     }
 }
 
-/// Whether a pair could have passed through each other on the way from an anchor to placements and coordinates, each body
-/// at constant linear and angular velocity: conservative advancement, each advance no longer than the present gap allows.
+/// The pair that met on the way from an anchor to placements and coordinates, each body at constant linear and angular
+/// velocity, if any.
 pub(crate) fn swept_contact<'a, R: Real>(
     model: &Model<'a, R>,
     anchor: &'a [R],
@@ -123,40 +117,17 @@ pub(crate) fn swept_contact<'a, R: Real>(
     q: &[R],
 ) -> Option<(Place, Place)> {
     let headings = 4 * model.boundaries.len();
-    let turn_of = |record: &BoundaryRecord<R>| {
-        record.link.map_or(R::zero(), |link| at(q, 3 * link + 2) - at(anchor, headings + link))
+    let motion = |a: &Placed<'_, R>, i: usize| Motion {
+        shift: to.get(i).origin - a.pose.origin,
+        turn: a.record.link.map_or(R::zero(), |link| at(q, 3 * link + 2) - at(anchor, headings + link)),
     };
-    for (i, j, a, b) in pairs(model, Poses(anchor)) {
-        let (a1, b1) = (to.get(i), to.get(j));
-        let (turn_a, turn_b) = (turn_of(a.record), turn_of(b.record));
-        let travel = |p: Pose<R>, q: Pose<R>, turn: R, reach: R| cabs(q.origin - p.origin) + turn.abs() * reach;
-        let length = travel(a.pose, a1, turn_a, a.record.reach) + travel(b.pose, b1, turn_b, b.record.reach);
-        if apart(&a, &b) > length {
-            continue;
-        }
-        let between = |p: Pose<R>, q: Pose<R>, turn: R, x: R| Pose {
-            origin: p.origin + (q.origin - p.origin) * x,
-            turn: p.turn * cis(turn * x),
-        };
-        let limit = touching::<R>() * size(&a, &b);
-        let mut x = R::zero();
-        let mut advances = 0;
-        while x < R::one() {
-            let pa = Placed { pose: between(a.pose, a1, turn_a, x), ..a };
-            let pb = Placed { pose: between(b.pose, b1, turn_b, x), ..b };
-            // Nodes are enough here: their distance exceeds the gap by less than a spacing.
-            let (square, _, _) = closest_nodes(&pa, &pb);
-            let coarse = square.sqrt() - R::HALF * (a.record.spacing + b.record.spacing);
-            let gap = if coarse > length * (R::one() - x) { coarse } else { signed_gap(&pa, &pb, model.store) };
-            advances += 1;
-            if gap <= limit || advances > 200 {
-                return Some((model.place(i), model.place(j)));
-            }
-            if length <= gap {
-                break;
-            }
-            x += gap / length;
-        }
-    }
-    None
+    let met = pairs(model, Poses(anchor)).find(|(i, j, a, b)| {
+        let motions = [motion(a, *i), motion(b, *j)];
+        let travel = |m: &Motion<R>, reach: R| cabs(m.shift) + m.turn.abs() * reach;
+        let [ma, mb] = &motions;
+        let length = travel(ma, a.record.reach) + travel(mb, b.record.reach);
+        let clear = apart(a, b) > length || coarse_gap(a, b) > length;
+        !clear && meet(a, b, Some(motions), model.store, touching(a, b))
+    });
+    met.map(|(i, j, _, _)| (model.place(i), model.place(j)))
 }

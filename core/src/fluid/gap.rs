@@ -1,4 +1,4 @@
-//! The gap between two outlines: closest nodes, then Newton's method on both curves.
+//! Closest points of two outlines: closest nodes, then Newton's method on both curves.
 //!
 //! Tested by `tests/near_contact`, `tests/bad_input`, `tests/walls`.
 
@@ -10,11 +10,6 @@ use crate::base::scalar::Real;
 use crate::geometry::nodes::{Nodes, targets};
 use crate::geometry::pose::Pose;
 use crate::model::boundary::BoundaryRecord;
-
-/// A gap below this share of the smaller body's size counts as contact.
-pub(crate) fn touching<R: Real>() -> R {
-    R::lit(1e-8).max(R::lit(64.0) * R::EPSILON)
-}
 
 /// Whether the polygon of the nodes encloses `z` (crossing number).
 pub(crate) fn encloses<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>) -> bool {
@@ -113,7 +108,7 @@ pub(crate) fn closest_points<R: Real>(
     }
     for (square, i, k) in minima {
         if square < R::MAX {
-            let (s, t, distance, _) = refine(a, b, store, at(a.nodes.t, i), at(b.nodes.t, k), square.sqrt());
+            let (s, t, distance, _) = refine(a, b, store, at(a.nodes.t, i), at(b.nodes.t, k), square.sqrt(), false);
             visit(s, t, distance);
         }
     }
@@ -173,20 +168,21 @@ impl<R: Real> Task for Closest<'_, '_, R> {
     }
 }
 
-/// Signed gap of two boundaries: negative when the closest points show that they overlap. Closest nodes, then
-/// Newton on both outlines.
-pub(crate) fn signed_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) -> R {
-    let (square, i, k) = closest_nodes(a, b);
-    let (_, _, distance, sign) = refine(a, b, store, at(a.nodes.t, i), at(b.nodes.t, k), square.sqrt());
-    distance * sign
-}
-
 /// Newton's method on both outlines from the parameters (s, t) at distance `coarse`: parameters, distance, and −1 if the
-/// closest points show that the outlines overlap, else 1.
+/// closest points show that the outlines overlap, else 1. No point farther apart than `coarse` is accepted, but for the
+/// depth of outlines that are known to cross.
 ///
 /// Solved is x'(s)·n(t) = 0 and (x − y)·y'(t) = 0 with n the normal of the second outline, which does not degenerate as
 /// the distance vanishes and continues to the deepest point of a slight overlap.
-fn refine<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R], mut s: R, mut t: R, coarse: R) -> (R, R, R, R) {
+pub(crate) fn refine<R: Real>(
+    a: &Placed<'_, R>,
+    b: &Placed<'_, R>,
+    store: &[R],
+    mut s: R,
+    mut t: R,
+    coarse: R,
+    crossing: bool,
+) -> (R, R, R, R) {
     let origin = a.pose.origin;
     let limit = R::TWO * a.nodes.step.max(b.nodes.step);
     // The closest pair seen, in case Newton's method does not settle.
@@ -220,10 +216,7 @@ fn refine<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R], mut s: R, 
             // Converged: the normal distance, which a slight overlap makes negative.
             let ([x, ..], [y, _, _, normal]) = (a.jet(store, s, origin), b.jet(store, t, origin));
             let depth = dot(x - y, normal);
-            // An overlap may be deeper than the closest nodes are apart; the outline itself must confirm it then.
-            let crossed =
-                || encloses(&b.nodes, b.pose.unturned(x + origin - b.pose.origin)) == (b.record.sign < R::zero());
-            if depth.abs() <= best.2 * (R::one() + R::lit(1e-3)) || (depth < R::zero() && crossed()) {
+            if depth.abs() <= best.2 * (R::one() + R::lit(1e-3)) || (depth < R::zero() && crossing) {
                 best = (s, t, depth.abs(), if depth < R::zero() { -R::one() } else { R::one() });
             }
             break;
@@ -238,8 +231,4 @@ pub(crate) fn apart<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
         return -R::MAX;
     }
     cabs(a.pose.origin - b.pose.origin) - a.record.reach - b.record.reach
-}
-
-pub(crate) fn size<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
-    a.record.reach.min(b.record.reach)
 }

@@ -3,6 +3,7 @@
 pub(crate) mod assembly;
 #[cfg(all(test, feature = "alloc"))]
 mod assembly_test;
+pub(crate) mod clearance;
 pub(crate) mod configuration;
 pub(crate) mod contact;
 pub(crate) mod gap;

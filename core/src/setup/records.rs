@@ -296,7 +296,10 @@ pub(crate) fn fill_nodes<R: Real>(record: &mut BoundaryRecord<R>, store: &mut [R
     let n = record.nodes;
     let (outlines, data) = store.split_at_mut_checked(record.slots.data_at).ok_or(Status::Internal)?;
     let (reach, speed) = write_nodes(&record.view(outlines), record.origin, n, data)?;
-    record.spacing = speed * R::TAU / R::count(n.max(1));
+    let t = part(data, 4 * n, n);
+    let ends = t.iter().zip(t.iter().cycle().skip(1));
+    let longest = record.view(outlines).curve.longest(ends.map(|(from, to)| (*from, *to)));
+    record.spacing = longest.max(speed * R::TAU / R::count(n.max(1)));
     // The outline may bulge beyond its nodes by at most half a spacing.
     record.reach = reach + record.spacing * R::HALF;
     if features::NEAR && record.slots.table_len > 0 {

@@ -73,6 +73,48 @@ impl<R: Real> Curve<'_, R> {
     }
 }
 
+/// Bounds of a curve's derivatives, of all parameters: |γ′|, |γ″|, |γ‴|. Infinite: see [`Curve::bend`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Spread<R>(pub [R; 3]);
+
+impl<R: Real> Curve<'_, R> {
+    /// The bounds, once for many calls of [`bend`](Self::bend).
+    pub(crate) fn spread(&self) -> Spread<R> {
+        Spread(match self {
+            Curve::Ellipse(c) => [c.a.max(c.b); 3],
+            Curve::Polygon(c) => [c.perimeter / R::TAU, R::MAX, R::MAX],
+            Curve::Fourier(c) => c.modes().fold([R::zero(); 3], |[first, second, third], (k, c)| {
+                let k = k.abs();
+                let size = cabs(c) * k;
+                [first + size, second + size * k, third + size * k * k]
+            }),
+        })
+    }
+
+    /// A number with which |γ(t + u) − γ(t) − γ′(t) u| ≤ w²/2 times it for all |u| ≤ w, given |γ″(t)|.
+    pub(crate) fn bend(&self, spread: &Spread<R>, t: R, w: R, second: R) -> R {
+        let Spread([first, most, third]) = *spread;
+        match self {
+            Curve::Polygon(c) => c.bend(t, w),
+            // A chord is no longer than its arc.
+            _ => most.min(second + w * third).min(R::lit(4.0) * first / w),
+        }
+    }
+
+    /// A bound of the lengths of arcs given by their ends.
+    pub(crate) fn longest(&self, arcs: impl Iterator<Item = (R, R)>) -> R {
+        let spread = self.spread();
+        let Spread([first, ..]) = spread;
+        arcs.fold(R::zero(), |longest, (from, to)| {
+            let turns = if to > from { R::zero() } else { R::TAU };
+            let w = (to - from + turns) * R::HALF;
+            let [_, d, second] = self.jet_real(from + w);
+            let speed = cabs(d) + w * self.bend(&spread, from + w, w, cabs(second));
+            longest.max(R::TWO * w * speed.min(first))
+        })
+    }
+}
+
 /// Integrals over the area inside an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaProperties<R> {

@@ -105,6 +105,21 @@ impl<'a, R: Real> Polygon<'a, R> {
         [x, dx * rate, ddx * (rate * rate)]
     }
 
+    /// See [`Curve::bend`](super::Curve::bend): each corner turns the tangent by no more than its jump, at no more than
+    /// the rate where the arc is closest to it.
+    pub(super) fn bend(&self, t: R, w: R) -> R {
+        let (sigma, _) = self.locate(t);
+        let rate = self.perimeter / R::TAU;
+        self.corners().fold(R::zero(), |sum, corner| {
+            let (r, jump) = (corner.r, dot(corner.jump, corner.jump).sqrt() * rate);
+            self.images(sigma - corner.arclength, R::lit(FAR) * r + w * rate).fold(sum, |sum, y| {
+                let e = (-(y.abs() - w * rate).max(R::zero()) / r).exp();
+                let grown = R::one() + e;
+                sum + jump * (rate * e / (grown * grown * r)).min(R::TWO / w)
+            })
+        })
+    }
+
     pub(super) fn delta(&self, t: R, u: Complex<R>) -> Complex<R> {
         let (sigma, side) = self.locate(t);
         let rate = self.perimeter / R::TAU;
