@@ -99,8 +99,10 @@ fn sheets<'s, R: Real>(
     })
 }
 
-/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve.
-pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) {
+/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve. Returns the largest flux through a boundary by which the two
+/// approximations of one core's flow differ.
+pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) -> R {
+    let mut worst = R::zero();
     flow.stream.fill(R::zero());
     flow.normal.fill(R::zero());
     flow.tangential.fill(R::zero());
@@ -116,6 +118,7 @@ pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'
                 continue;
             }
             let turn = c.pose(i).unturned(c.pose(m).turn);
+            let mut difference = R::zero();
             let values = targets(&nodes, c.pose(m), c.pose(i)).zip(normals(target, &nodes));
             for (k, (z, n)) in values.enumerate() {
                 let at = core_flow(&sheet, z, target.first + k, true);
@@ -123,11 +126,14 @@ pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'
                 add(flow.stream, target.first + k, strength * at.stream);
                 add(flow.normal, target.first + k, strength * slope.re);
                 add(flow.tangential, target.first + k, -strength * slope.im);
+                difference += cabs(n * (at.slope - at.velocity));
             }
+            worst = worst.max(difference * strength.abs());
         }
     }
     multiply(system.regular, flow.stream, flow.potential);
     system.factors().solve(flow.potential);
+    worst
 }
 
 /// Adds `scale` θ′ h on the flow's own boundary, of which dn is the negative per strength.
@@ -146,10 +152,10 @@ fn own_flux<R: Real>(sheet: &Sheet<'_, R>, scale: R, out: &mut [R]) {
 /// integral of dn is −γ of the cores inside and that of β is 0; ten times as much, since what follows from them was found up to
 /// that much less exact about thin bodies; and how much the tabulated stream functions vary on their own boundaries. After
 /// [`solve`]; O(N).
-pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>) -> R {
+pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, difference: R) -> R {
     let total = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation.abs());
     let all = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation);
-    let mut worst = cores(c).fold(R::zero(), |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
+    let mut worst = cores(c).fold(difference, |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
     for (_, b, _) in c.each_boundary() {
         let sum = |x: &[R]| part(x, b.first, b.nodes).iter().fold(R::zero(), |sum, x| sum + *x);
         let inside = if b.sign > R::zero() { -all } else { b.circulation };
