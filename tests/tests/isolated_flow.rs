@@ -75,19 +75,24 @@ fn gradient_of_circulation_is_the_derivative_of_its_energy_around_any_shape() {
 }
 
 #[test]
-fn gradient_of_circulation_is_the_derivative_of_its_energy_near_contact() {
+fn gradient_of_circulation_near_contact_of_a_thin_body_is_exact_or_told() {
     // An ellipse over the flank of the thin rectangle, and before its end.
-    for (at, gap) in [([0.3, 0.42, 0.0], 1e-2), ([0.3, 0.42, 0.0], 1e-3), ([1.6, 0.0, 0.0], 1e-3)] {
-        let away = if at[1] > 0.0 { [at[0], at[1] + gap, at[2]] } else { [at[0] + gap, at[1], at[2]] };
+    for ([x, y], gap) in [([0.3, 0.42], 1e-2), ([0.3, 0.42], 1e-3), ([1.6, 0.0], 1e-3)] {
+        let at = if y > 0.0 { [x, y + gap, 0.0] } else { [x + gap, y, 0.0] };
         let of = |nodes| {
-            beside_ellipse(THIN, nodes, away, Quadrature::Graded, |scene| {
-                (gradient(scene), at_start(scene).view().resolution().unwrap().bound())
+            beside_ellipse(THIN, nodes, at, Quadrature::Graded, |scene| {
+                let mut sim = at_start(scene);
+                let bound = sim.view().resolution().unwrap().bound();
+                (gradient(scene), bound)
             })
         };
-        let ((few, bound), (many, _)) = (of(160), of(320));
-        let error = difference(&few, &many);
-        println!("{at:?}, gap {gap:e}: {error:.1e}, bound {bound:.1e}");
-        assert!(error <= 1e-7 && error <= bound, "{error:e} {bound:e}");
+        let (exact, _) = of(448);
+        for (nodes, most) in [(96, 1e-3), (128, 1e-4), (192, 2e-7)] {
+            let (computed, bound) = of(nodes);
+            let error = difference(&computed, &exact);
+            println!("{at:?}, {nodes} nodes: {error:.1e}, bound {bound:.1e}");
+            assert!(error <= most && error <= bound, "{error:e} {bound:e}");
+        }
     }
 }
 
@@ -110,23 +115,23 @@ fn outlines_through_points_of_ellipses_have_the_flow_of_the_ellipses() {
         };
         let (curve, ellipse) = (of(Shape::Curve { points: &points }), of(Shape::Ellipse { a, b }));
         let errors: Vec<f64> = curve.iter().zip(&ellipse).map(|(x, y)| difference(x, y)).collect();
-        println!("{a} × {b}: {errors:.1?}");
+        println!("{a} × {b}: {errors:?}");
         assert!(errors.iter().all(|e| *e <= tolerance), "{errors:?}");
     }
 }
 
 #[test]
 fn mirror_images_of_outlines_feel_mirrored_forces() {
-    // Two stars and two sections that face each other, of opposite circulations: no force along the mirror.
-    let section = section();
-    for (shape, nodes) in [(STAR, 96), (Shape::Curve { points: &section }, 256)] {
-        let links = [1.0, -1.0].map(|circulation| circulating(shape, circulation, nodes));
-        let bodies = [body(&links[0], [0.0, 0.8, 0.4], [0.0; 3]), body(&links[1], [0.0, -0.8, -0.4], [0.0; 3])];
-        let force = gradient(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) });
-        let mirrored = [force[3], -force[4], -force[5]];
-        println!("{force:?}");
-        assert_close(&force[..3], &mirrored, 1e-10);
-    }
+    // Two polygons without symmetry that face each other, of opposite circulations, the one a mirror image of the other.
+    let mut image = CORNER.map(|[x, y]| [x, -y]);
+    image.reverse();
+    let [first, second] = [(&CORNER, 1.0), (&image, -1.0)]
+        .map(|(vertices, circulation)| circulating(Shape::Polygon { vertices, radius: Some(0.05) }, circulation, 128));
+    let bodies = [body(&first, [0.0, 0.7, 0.4], [0.0; 3]), body(&second, [0.0, -0.7, -0.4], [0.0; 3])];
+    let force = gradient(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) });
+    println!("{force:?}");
+    assert_close(&force[..3], &[force[3], -force[4], -force[5]], 1e-10);
+    assert_near(force[0], 0.0, 1e-10);
 }
 
 #[test]
@@ -168,42 +173,4 @@ fn energy_of_a_circulating_thin_body_is_conserved() {
         println!("{drift:.1e} of {start}");
         assert!(drift <= 1e-8 * start, "{drift:e} of {start}");
     });
-}
-#[test]
-fn zz() {
-    let y = 0.42 + 1e-3;
-    for shape in [THIN, Shape::Ellipse { a: 1.0, b: 0.02 }] {
-        let y = if shape == THIN { y } else { y - 0.0009 };
-        let get = |nodes: usize, g: f64| {
-            let first = circulating(shape, g, nodes);
-            let second = circulating(Shape::Ellipse { a: 0.6, b: 0.4 }, -0.5 * g, nodes);
-            let bodies = [body(&first, [0.0; 3], [0.1, 0.2, 0.3]), body(&second, [0.3, y, 0.0], [0.3, -0.1, 0.5])];
-            let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
-            let mut sim = at_start(&scene);
-            let m = matrix(&mut sim.view(), |sim, out| sim.mass_matrix(out)).concat();
-            let f = vector(&mut sim.view(), |sim, out| sim.christoffel(out));
-            let gr = gradient(&scene);
-            let slope = 0.0;
-            (m, f, gr, sim.view().resolution().unwrap(), slope)
-        };
-        let re = get(448, 1.0);
-        for n in [96, 128, 160, 192, 256, 320] {
-            let a = get(n, 1.0);
-            println!(
-                "{n}: M {:.1e} F {:.1e} G {:.1e} slope {:.1e} {:?}",
-                difference(&a.0, &re.0),
-                difference(&a.1, &re.1),
-                difference(&a.2, &re.2),
-                a.4,
-                a.3
-            );
-        }
-    }
-    let section = section();
-    for n in [128, 192] {
-        let links = [1.0, -1.0].map(|circulation| circulating(Shape::Curve { points: &section }, circulation, n));
-        let bodies = [body(&links[0], [0.0, 0.8, 0.4], [0.0; 3]), body(&links[1], [0.0, -0.8, -0.4], [0.0; 3])];
-        let scene = Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) };
-        println!("{n} {:?} {:?}", gradient(&scene), at_start(&scene).view().resolution().unwrap());
-    }
 }

@@ -10,7 +10,7 @@
 //! The derivative of the first as it is computed is a second approximation of L′; what is derived from the stream function uses
 //! it, so that every derivative is that of the numbers.
 //!
-//! Tested by `tests/circulation`, `tests/gradients`.
+//! Tested by `tests/isolated_flow`, `tests/gradients`.
 
 use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::memory::{put, take};

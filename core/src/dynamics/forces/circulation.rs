@@ -150,12 +150,13 @@ fn own_flux<R: Real>(sheet: &Sheet<'_, R>, scale: R, out: &mut [R]) {
 
 /// How well the nodes resolve the cores' flows, relative to the circulations: their fluxes through every boundary, of which the
 /// integral of dn is −γ of the cores inside and that of β is 0; ten times as much, since what follows from them was found up to
-/// that much less exact about thin bodies; and how much the tabulated stream functions vary on their own boundaries. After
-/// [`solve`]; O(N).
+/// that much less exact about thin bodies; how much the tabulated stream functions vary on their own boundaries; and, once, the
+/// difference that [`solve`] returned, which is ten times the error or more. O(N).
 pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, difference: R) -> R {
     let total = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation.abs());
     let all = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation);
-    let mut worst = cores(c).fold(difference, |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
+    let mut worst =
+        cores(c).fold(difference / R::lit(10.0), |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
     for (_, b, _) in c.each_boundary() {
         let sum = |x: &[R]| part(x, b.first, b.nodes).iter().fold(R::zero(), |sum, x| sum + *x);
         let inside = if b.sign > R::zero() { -all } else { b.circulation };
