@@ -151,7 +151,7 @@ fn own_flux<R: Real>(sheet: &Sheet<'_, R>, scale: R, out: &mut [R]) {
 /// How well the nodes resolve the cores' flows, relative to the circulations: their fluxes through every boundary, of which the
 /// integral of dn is −γ of the cores inside and that of β is 0; ten times as much, since what follows from them was found up to
 /// that much less exact about thin bodies; how much the tabulated stream functions vary on their own boundaries; and, once, the
-/// difference that [`solve`] returned, which is ten times the error or more. O(N).
+/// difference that [`solve`] returned, found to be at least as large as the error of the gradient (and often far larger). O(N).
 pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, difference: R) -> R {
     let total = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation.abs());
     let all = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation);
