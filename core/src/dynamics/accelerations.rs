@@ -151,8 +151,8 @@ impl<R: Real> Evaluation<'_, R> {
             }
             return;
         }
-        solve(c, &self.system, &mut self.circulation);
-        self.kept.indicators.circulation = data_error(c, &self.circulation);
+        let difference = solve(c, &self.system, &mut self.circulation);
+        self.kept.indicators.circulation = data_error(c, &self.circulation, difference);
         let (system, flow, pairs) = (&self.system, &mut self.circulation, &mut self.pairs);
         let mut circulation = Circulation { c, system, flow, pairs };
         circulation.add_energy_gradient(density, outer);

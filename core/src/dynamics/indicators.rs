@@ -29,7 +29,8 @@ pub struct Resolution<R> {
     /// than the largest. 0 with the boundary formula.
     pub force: R,
     /// Error of the constant density on the links (by the plain rule also on walls) as a solution of the boundary system; with circulation also the error of the
-    /// fluxes of the bodies' isolated flows through every boundary, relative to the circulations, if that is more.
+    /// fluxes of the bodies' isolated flows through every boundary, or the difference of two approximations of these flows, relative to
+    /// the circulations, if that is more.
     pub quadrature: R,
     /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
     /// repulsion.

@@ -4,12 +4,14 @@
 //! Tested by `tests/articulated.rs:shortcut_for_a_lone_body_agrees_with_the_general_path`, `tests/circulation`,
 //! `tests/reference_values`.
 
-use crate::base::complex::{Complex, cis, cln, complex, dot, perp};
+use crate::base::complex::{Complex, cis, complex, dot, perp};
 use crate::base::memory::{add, at, copy, part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
 use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
+use crate::dynamics::forces::circulation::ellipse_flow;
 use crate::fluid::configuration::Configuration;
+use crate::fluid::isolated::own_density;
 use crate::fluid::near::preimage::Source;
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
 use crate::geometry::pose::{Pose, Twist, put_pose, put_three, twist_of};
@@ -88,12 +90,8 @@ pub(crate) fn inverse_mass<R: Real>(added: &[R; 9], density: R, link: &LinkRecor
 }
 
 /// Reals of scratch for `n` nodes.
-pub(crate) fn scratch_len(n: usize, circulation: bool) -> Result<usize> {
-    let blocks = if circulation { 2 } else { 1 };
-    n.checked_mul(n)
-        .and_then(|b| b.checked_mul(blocks))
-        .and_then(|b| b.checked_add(5 * n))
-        .ok_or(Status::SizeOverflow.into())
+pub(crate) fn scratch_len(n: usize) -> Result<usize> {
+    n.checked_mul(n).and_then(|b| b.checked_add(4 * n)).ok_or(Status::SizeOverflow.into())
 }
 
 /// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame;
@@ -109,28 +107,18 @@ pub(crate) fn constants<R: Real>(
     let nodes = body.nodes(store);
     let h = nodes.step;
     let mut rest = scratch;
-    let system = take(&mut rest, n * n + 4 * n)?;
+    let system = take(&mut rest, n * n + 3 * n)?;
     let pivots = take_as(&mut rest, n)?;
-    let regular = if circulation { take(&mut rest, n * n)? } else { &mut [] };
     let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
     let source = Source::of(body, store);
-    let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut *regular, ld: n, at: 0 });
+    let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut [], ld: n, at: 0 });
     fill_self_block(&source.nodes, body.sign, R::zero(), &mut a, &mut g);
     add_flank_terms(&source, body.sign, &mut a, &mut g);
     let potential = |k: usize| [at(nodes.x, k), at(nodes.y, k), at(nodes.chi, k)];
-    // The circulatory flow: on an ellipse or disc its stream function is constant and its potential 0.
-    let point = circulation && body.core.axes[0] == R::zero();
     for k in 0..n {
         for (c, x) in potential(k).into_iter().enumerate() {
             put(columns, c * n + k, -R::TWO * x);
         }
-        let mut sum = R::zero();
-        if point {
-            for (j, x) in nodes.points().enumerate() {
-                sum += at(regular, j * n + k) * cln(x - body.core.centre).re;
-            }
-        }
-        put(columns, 3 * n + k, sum * body.circulation / R::TAU);
     }
     factor(system, n, n, pivots)?;
     let (lu, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
@@ -149,15 +137,16 @@ pub(crate) fn constants<R: Real>(
                     *m += b * psi;
                 }
             }
-            if let Some(p) = impulse.get_mut(row) {
-                *p += b * at(columns, 3 * n + k);
-            }
         }
         if circulation {
-            let [_, slope, _] = crate::dynamics::forces::circulation::core_flow(&body.core, x);
-            // dn = q Re(ν L'), ν = i h Γ'
-            let nu: Complex<R> = complex(-d.im, d.re) * h;
-            let normal = strength * (nu * slope).re;
+            // The isolated flow alone: its stream function is constant on the outline, its potential 0.
+            let normal = if body.slots.core_modes > 0 {
+                -strength * own_density(body, store, k, h)
+            } else {
+                // dn = q Re(ν L'), ν = i h Γ'
+                let nu: Complex<R> = complex(-d.im, d.re) * h;
+                strength * (nu * ellipse_flow(&body.core, x).velocity).re
+            };
             for (p, s) in impulse.iter_mut().zip([x.im, -x.re, -dot(x, x) * R::HALF]) {
                 *p -= s * normal;
             }

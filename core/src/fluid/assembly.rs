@@ -128,7 +128,8 @@ pub(crate) fn assemble<R: Real>(
                 Block { data: &mut *matrix, ld, at: source.first * ld },
                 Block { data: &mut *regular, ld: n, at: source.first * n },
             );
-            for row in 0..n {
+            // Walls come first among the unknowns.
+            for row in if ready_walls { walls } else { 0 }..n {
                 for p in c.preimages(j, row) {
                     add_pole_term(&p, source.table(store), source.nodes, source.sign, row, &mut a, &mut g);
                 }

@@ -8,6 +8,7 @@ pub(crate) mod configuration;
 pub(crate) mod contact;
 pub(crate) mod gap;
 pub(crate) mod induced;
+pub(crate) mod isolated;
 pub(crate) mod near;
 pub(crate) mod pair_pass;
 pub(crate) mod potentials;

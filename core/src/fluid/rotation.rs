@@ -8,25 +8,27 @@ use crate::base::features;
 use crate::base::memory::{part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
+use crate::fluid::isolated;
 use crate::fluid::near::pole;
 use crate::fluid::near::preimage::Source;
 use crate::fluid::self_block::{Block, add_flank_terms, fill_self_block};
 use crate::geometry::curve::Curve;
 use crate::geometry::nodes::{Nodes, write_nodes};
 use crate::linear::lu::{Factors, factor};
-use crate::model::boundary::BoundaryRecord;
+use crate::model::boundary::{BoundaryRecord, Slots};
 
 /// Fills χ₃ at the nodes: the function harmonic inside the outline with the normal derivative of the rotation about the
 /// frame's origin. Closed form for an ellipse; otherwise one interior solve, (I − Im W/π + 1/M) χ = −Re W/π |X|²/2, on the
-/// nodes or, where nodes will move, on twice as many, in `scratch`, of which the Fourier sum in s is kept. O(M³) once.
+/// nodes or, where nodes will move, on twice as many, in `scratch`, of which the Fourier sum in s is kept. With the same factors
+/// the isolated circulatory flow, where there is memory for it. O(M³) once.
 pub(crate) fn fill_rotation_potential<R: Real>(
-    record: &BoundaryRecord<R>,
+    record: &mut BoundaryRecord<R>,
     store: &mut [R],
     scratch: &mut [R],
 ) -> Result<()> {
     let n = record.nodes;
     if !matches!(record.view(store).curve, Curve::Ellipse(_)) {
-        let m = potential_nodes(record.slots.modes, n);
+        let m = potential_nodes(&record.slots, n);
         let mut rest = scratch;
         let matrix = take(&mut rest, m * m + m)?;
         let regular = take(&mut rest, m * m)?;
@@ -41,15 +43,26 @@ pub(crate) fn fill_rotation_potential<R: Real>(
         let nodes = Nodes::read(data, m);
         let (block, rhs) = matrix.split_at_mut_checked(m * m).ok_or(Status::Internal)?;
         let (mut a, mut g) = (Block { data: block, ld: m, at: 0 }, Block { data: &mut *regular, ld: m, at: 0 });
+        let source = Source { record, nodes, view, table };
         fill_self_block(&nodes, R::one(), R::one() / R::count(m), &mut a, &mut g);
-        add_flank_terms(&Source { record, nodes, view, table }, R::one(), &mut a, &mut g);
+        add_flank_terms(&source, R::one(), &mut a, &mut g);
         rhs.fill(R::zero());
         for (column, x) in regular.chunks_exact(m.max(1)).zip(nodes.points()) {
             crate::base::memory::axpy(rhs, -dot(x, x) * R::HALF, column);
         }
         factor(matrix, m, m, pivots)?;
         let (block, chi) = matrix.split_at_mut_checked(m * m).ok_or(Status::Internal)?;
-        Factors { lu: block, ld: m, pivots }.back_substitute(chi);
+        let factors = Factors { lu: block, ld: m, pivots };
+        factors.back_substitute(chi);
+        if record.slots.core_modes > 0 {
+            let sums = take(&mut rest, 2 * record.slots.core_modes)?;
+            let core = isolated::tabulate(&source, &factors, regular, sums, rest)?;
+            crate::base::memory::copy(part_mut(store, record.slots.core_at, sums.len()), sums);
+            record.core = core;
+        }
+        if record.link.is_none() {
+            return Ok(());
+        }
         fourier_modes(chi, part_mut(store, record.slots.modes_at, record.slots.modes));
         if record.slots.modes == 0 {
             crate::base::memory::copy(part_mut(store, record.slots.data_at + 7 * n, n), chi);
@@ -65,15 +78,20 @@ pub(crate) fn fill_rotation_potential<R: Real>(
     Ok(())
 }
 
-/// Nodes on which χ₃ is computed: as many as there are numbers kept of its Fourier sum, or the boundary's own.
-fn potential_nodes(modes: usize, nodes: usize) -> usize {
-    if modes == 0 { nodes } else { modes - 2 }
+/// Nodes on which χ₃ and the isolated flow are computed: as many as there are numbers kept of their Fourier sums, or the
+/// boundary's own.
+fn potential_nodes(slots: &Slots, nodes: usize) -> usize {
+    match slots.modes.max(slots.core_modes) {
+        0 => nodes,
+        modes => modes - 2,
+    }
 }
 
-/// Reals of scratch for χ₃ of an outline without closed form.
-pub(crate) fn potential_scratch(modes: usize, nodes: usize) -> Option<usize> {
-    let m = potential_nodes(modes, nodes);
-    m.checked_mul(m)?.checked_mul(2)?.checked_add(m.checked_mul(13)?)
+/// Reals of scratch for χ₃ and the isolated flow of an outline without closed form.
+pub(crate) fn potential_scratch(slots: &Slots, nodes: usize) -> Option<usize> {
+    let m = potential_nodes(slots, nodes);
+    let core = if slots.core_modes > 0 { slots.core_modes.checked_mul(2)?.checked_add(m.checked_mul(2)?)? } else { 0 };
+    m.checked_mul(m)?.checked_mul(2)?.checked_add(m.checked_mul(13)?)?.checked_add(core)
 }
 
 /// Reals that the Fourier sum of χ₃ on 2·`nodes` points takes.
@@ -81,8 +99,13 @@ pub(crate) fn modes_len(nodes: usize) -> Option<usize> {
     nodes.checked_mul(2)?.checked_add(2)
 }
 
+/// Reals of each Fourier sum of the isolated flow: on 2·`nodes` points where nodes move, else on the nodes.
+pub(crate) fn core_len(graded: bool, nodes: usize) -> Option<usize> {
+    if graded { modes_len(nodes) } else { nodes.checked_add(2) }
+}
+
 /// Pairs (a_m, b_m), m = 0 … M/2, of M equispaced samples. O(M²).
-fn fourier_modes<R: Real>(samples: &[R], modes: &mut [R]) {
+pub(crate) fn fourier_modes<R: Real>(samples: &[R], modes: &mut [R]) {
     let count = R::count(samples.len().max(1));
     let half = samples.len() / 2;
     for (m, pair) in modes.as_chunks_mut::<2>().0.iter_mut().enumerate() {

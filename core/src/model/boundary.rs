@@ -25,6 +25,9 @@ pub(crate) struct Slots {
     /// Fourier sum of the potential of rotation (no reals: closed form or fixed nodes).
     pub(crate) modes_at: usize,
     pub(crate) modes: usize,
+    /// Fourier sums of the isolated circulatory flow, this many reals each (none: closed form or not needed).
+    pub(crate) core_at: usize,
+    pub(crate) core_modes: usize,
     /// Table of pole terms (no reals: plain rule).
     pub(crate) table_at: usize,
     pub(crate) table_len: usize,
@@ -76,13 +79,17 @@ pub struct BoundaryRecord<R> {
     pub(crate) notice: Status,
 }
 
-/// Isolated circulatory flow of one boundary, analytic outside: log z' about a point, or log W of an ellipse.
+/// Isolated circulatory flow of one boundary, analytic outside: log W of an ellipse in closed form, else tabulated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Core<R> {
-    /// Origin of z' in the boundary's frame.
+    /// Centre of an ellipse in the boundary's frame.
     pub(crate) centre: Complex<R>,
-    /// Semi-axes of an ellipse; (0, 0) for a point vortex.
+    /// Its semi-axes.
     pub(crate) axes: [R; 2],
+    /// Stream function on the boundary where it is log |z| far away (the logarithm of the outline's capacity), and by how much
+    /// the tabulated one varies along the boundary.
+    pub(crate) level: R,
+    pub(crate) spread: R,
 }
 
 impl<R: Real> Default for BoundaryRecord<R> {
@@ -143,10 +150,15 @@ impl<R: Real> BoundaryRecord<R> {
             _ => fourier_sum(part(store, self.slots.modes_at, self.slots.modes), s()),
         }
     }
+    /// Harmonic conjugate θ of the isolated flow's stream function at permanent parameter s: θ′(s) and θ(s) − s.
+    pub(crate) fn isolated(&self, store: &[R], s: R) -> [R; 2] {
+        let (at, len) = (self.slots.core_at, self.slots.core_modes);
+        [at, at + len].map(|at| fourier_sum(part(store, at, len), s))
+    }
 }
 
 /// Σ a_m cos ms + b_m sin ms of pairs (a_m, b_m), by Clenshaw's recurrence.
-fn fourier_sum<R: Real>(modes: &[R], s: R) -> R {
+pub(crate) fn fourier_sum<R: Real>(modes: &[R], s: R) -> R {
     let (sin, cos) = s.sin_cos();
     let twice = cos * R::TWO;
     let (mut a1, mut a2, mut b1, mut b2) = (R::zero(), R::zero(), R::zero(), R::zero());

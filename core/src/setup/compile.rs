@@ -13,7 +13,7 @@ use crate::scene::{CirculationModel, Description, each_link, motions, wall_count
 use crate::setup::fingerprint::fingerprint;
 use crate::setup::items::items;
 use crate::setup::layout::{Layout, lay_out};
-use crate::setup::records::{build_boundaries, build_coordinates, build_links, grade_walls};
+use crate::setup::records::{build_boundaries, build_coordinates, build_links, fill_wall_cores, grade_walls};
 use crate::setup::traits::Traits;
 use crate::setup::validate::validate;
 
@@ -93,7 +93,8 @@ impl<'a, R: Real> Model<'a, R> {
             grade_walls(walls, store, scratch)?;
         }
         if traits.fluid {
-            let walls = memory.boundaries.get(..head.plan.walls).unwrap_or(&[]);
+            let walls = memory.boundaries.get_mut(..head.plan.walls).unwrap_or(&mut []);
+            fill_wall_cores(walls, store, scratch)?;
             crate::fluid::assembly::fill_walls(walls, &head, traits.circulation, store);
         }
         if traits.formulation == Formulation::Kirchhoff

@@ -7,7 +7,7 @@ use crate::base::status::{Error, Result, Status};
 use crate::dynamics::forces::close_range;
 use crate::fluid::near::buffers::{LADDERS, LISTS, MOST_LADDERS, rung_allowance};
 use crate::fluid::near::pole;
-use crate::fluid::rotation::{modes_len, potential_scratch};
+use crate::fluid::rotation::{core_len, modes_len, potential_scratch};
 use crate::geometry::grading::grading_len;
 use crate::model::Formulation;
 use crate::model::boundary::{BoundaryRecord, Slots};
@@ -91,6 +91,11 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
                 s.modes = modes_len(item.nodes).ok_or(Status::SizeOverflow)?;
                 (s.modes_at, at) = (at, sum(at, s.modes)?);
             }
+            let circulates = item.link.is_some() || item.circulation != R::zero();
+            if traits.circulation && circulates && !closed {
+                s.core_modes = core_len(traits.graded, item.nodes).ok_or(Status::SizeOverflow)?;
+                (s.core_at, at) = (at, sum(at, s.core_modes.saturating_mul(2))?);
+            }
             let with_chi = item.link.is_some();
             let data = BoundaryRecord::<R>::data_len(item.nodes, with_chi).ok_or(Status::SizeOverflow)?;
             (s.data_at, at) = (at, sum(at, data)?);
@@ -101,8 +106,8 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
                 }
             }
             scratch = scratch.max(item.shape.scratch_len().map_err(at_place)?);
-            if fluid && item.link.is_some() && !closed {
-                scratch = scratch.max(potential_scratch(s.modes, item.nodes).ok_or(Status::SizeOverflow)?);
+            if fluid && !closed && (item.link.is_some() || s.core_modes > 0) {
+                scratch = scratch.max(potential_scratch(&s, item.nodes).ok_or(Status::SizeOverflow)?);
             }
         }
         slot(i, first, s);
@@ -116,7 +121,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             (layout.walls_regular_at, at) = (at, sum(at, square(layout.wall_nodes)?)?);
         }
         if traits.formulation == Formulation::Kirchhoff {
-            scratch = scratch.max(crate::dynamics::kirchhoff::scratch_len(layout.unknowns, traits.circulation)?);
+            scratch = scratch.max(crate::dynamics::kirchhoff::scratch_len(layout.unknowns)?);
         }
     }
     if traits.graded && traits.repels {

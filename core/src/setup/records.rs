@@ -75,8 +75,8 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
                 add_flank_terms(&source, record.sign, &mut block, &mut regular);
             }
         }
-        if traits.circulation {
-            record.core = core_of(record, &item.shape, store);
+        if let (true, Shape::Ellipse { a, b }) = (traits.circulation, item.shape) {
+            record.core = Core { centre: -record.origin, axes: [a, b], ..Core::default() };
         }
     }
     Ok(())
@@ -134,37 +134,17 @@ pub(crate) fn grade_walls<R: Real>(walls: &mut [BoundaryRecord<R>], store: &mut 
     Ok(())
 }
 
-/// Isolated circulatory flow: an ellipse's own, otherwise a vortex at the centroid or, if that is outside or
-/// close to the outline, at the innermost point of a coarse grid.
-fn core_of<R: Real>(record: &BoundaryRecord<R>, shape: &Shape<'_, R>, store: &[R]) -> Core<R> {
-    if let Shape::Ellipse { a, b } = *shape {
-        return Core { centre: -record.origin, axes: [a, b] };
+/// Tabulates the isolated circulatory flow of walls that have no closed form, once their nodes are graded.
+pub(crate) fn fill_wall_cores<R: Real>(
+    walls: &mut [BoundaryRecord<R>],
+    store: &mut [R],
+    scratch: &mut [R],
+) -> Result<()> {
+    for b in walls.iter_mut().filter(|b| b.slots.core_modes > 0) {
+        let place = b.place;
+        fill_rotation_potential(b, store, scratch).map_err(|e| e.at(place))?;
     }
-    let nodes = record.nodes(store);
-    let clearance = |z: Complex<R>| {
-        if crate::fluid::gap::encloses(&nodes, z) {
-            nodes.points().fold(R::MAX, |d, x| d.min(cabs(x - z)))
-        } else {
-            -R::one()
-        }
-    };
-    let count = R::count(nodes.x.len().max(1));
-    let mean = nodes.points().fold(Complex::default(), |s, x| s + x) / count;
-    let mut best = (clearance(mean), mean);
-    let first = best.0;
-    const GRID: usize = 32;
-    for i in 0..GRID {
-        for k in 0..GRID {
-            let side = |i| (R::count(2 * i + 1) / R::count(GRID) - R::one()) * record.reach;
-            let z = complex(side(i), side(k));
-            let d = clearance(z);
-            // The mean of the nodes is kept unless another point is clearly deeper inside.
-            if d > best.0 && d > first * R::TWO {
-                best = (d, z);
-            }
-        }
-    }
-    Core { centre: best.1, axes: [R::zero(); 2] }
+    Ok(())
 }
 
 pub(crate) fn build_links<R: Real, S: Description<R>>(

@@ -2,21 +2,22 @@
 //! obstacles, its energy gradient and the force linear in the velocities (Kutta–Joukowski), both as exact derivatives of discrete
 //! quantities.
 //!
-//! Core flow of boundary i in its frame: L(z) with Re L its stream function per 2π of strength, L = log z about a point or
-//! log W about an ellipse; strengths q_i = γ_i/2π. On all nodes Ψ = Σ q_i Re L, its fluxes dn = Σ q_i Re(ν L') and
+//! Core flow of boundary i in its frame: L(z) with Re L its stream function per 2π of strength, the boundary's isolated flow, 0 on
+//! itself: log W about an ellipse, about other outlines that of a vortex sheet (`fluid/isolated.rs`); strengths q_i = γ_i/2π. On all nodes Ψ = Σ q_i Re L, its fluxes dn = Σ q_i Re(ν L') and
 //! β = Σ q_i Re(iν L') with ν = n ds. The flow that cancels the cores' normal velocity solves A φ = Re(G) Ψ: one more
 //! right-hand side of the same matrix. Energy T_c = ½ (Ψ·dn − φ·β), impulse P = Bᵀφ − Sᵀdn with
 //! S = (y, −x, −|X|²/2). Everything here is per unit density of the fluid.
 //!
 //! Tested by `tests/circulation` (closed forms), `tests/gradients`, `tests/conservation`, `tests/near_contact`, `tests/errata`.
 
-use crate::base::complex::{Complex, cln, complex, csqrt, dot, perp};
+use crate::base::complex::{Complex, cabs, complex, csqrt, dot, perp};
 use crate::base::memory::{add, at, axpy, buffers, copy, inner, part, part_mut};
 use crate::base::scalar::Real;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::induced::{
     Induced, PairScratch, add_pose_gradient, add_three, boundary_twist, each_induced, relative_rates,
 };
+use crate::fluid::isolated::{FlowAt, Sheet, write_sheet};
 use crate::fluid::potentials::{flux_moments, to_world};
 use crate::fluid::system::BoundarySystem;
 use crate::geometry::nodes::{Nodes, targets};
@@ -40,23 +41,36 @@ buffers! {
         spare: R = *unknowns,
         /// Scratch of one function.
         second: R = *unknowns,
+        /// θ − s of the isolated flows without closed form, each on its boundary's nodes.
+        angle: R = *unknowns,
+        /// θ′ h.
+        sheet: R = *unknowns,
+        /// θ′/Γ′.
+        sheet_x: R = *unknowns,
+        sheet_y: R = *unknowns,
     }
 }
 
-/// L, L', L'' at z (frame of the core's boundary).
-pub(crate) fn core_flow<R: Real>(core: &Core<R>, z: Complex<R>) -> [Complex<R>; 3] {
+/// The flow about an ellipse at z (frame of its boundary).
+pub(crate) fn ellipse_flow<R: Real>(core: &Core<R>, z: Complex<R>) -> FlowAt<R> {
     let z = z - core.centre;
     let one = complex(R::one(), R::zero());
     let [a, b] = core.axes;
     if a == b {
         let inverse = one / z;
-        return [cln(z), inverse, -inverse * inverse];
+        return FlowAt { stream: (cabs(z) / a).ln(), slope: inverse, velocity: inverse, bend: -inverse * inverse };
     }
     // √(z² − c²) on the branch ~ z outside the segment of the foci.
     let c2 = complex(a * a - b * b, R::zero());
     let root = z * csqrt(one - c2 / (z * z));
     let inverse = one / root;
-    [cln((z + root) / (a + b)), inverse, -z * inverse * inverse * inverse]
+    let (stream, bend) = ((cabs(z + root) / (a + b)).ln(), -z * inverse * inverse * inverse);
+    FlowAt { stream, slope: inverse, velocity: inverse, bend }
+}
+
+/// The core flow of boundary i at other boundaries' nodes: z in its frame, at unknown `row`.
+fn core_flow<R: Real>(sheet: &Sheet<'_, R>, z: Complex<R>, row: usize, stream: bool) -> FlowAt<R> {
+    if sheet.record.slots.core_modes > 0 { sheet.at(z, row, stream) } else { ellipse_flow(&sheet.record.core, z) }
 }
 
 /// ν = n ds of a boundary's nodes in its own frame: +i h Γ' on solids, −i h Γ' on the tank.
@@ -72,38 +86,77 @@ fn cores<'a, R: Real>(
     c.each_boundary().filter(|(_, b, _)| b.circulation != R::zero()).map(|(i, b, _)| (i, b, b.circulation / R::TAU))
 }
 
-/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve.
-pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) {
+/// The same with their flows, of which [`solve`] left θ in `columns`: θ − s, θ′ h, θ′/Γ′.
+fn sheets<'s, R: Real>(
+    c: &'s Configuration<'s, R>,
+    columns: [&'s [R]; 4],
+) -> impl Iterator<Item = (usize, R, Sheet<'s, R>)> {
+    let circulating = c.each_boundary().filter(|(_, b, _)| b.circulation != R::zero());
+    circulating.map(move |(boundary, record, nodes)| {
+        let [angle, density, x, y] = columns.map(|x| part(x, record.first, record.nodes));
+        let sheet = Sheet { c, boundary, record, nodes, angle, density, velocity: [x, y] };
+        (boundary, record.circulation / R::TAU, sheet)
+    })
+}
+
+/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve. Returns the largest flux through a boundary by which the two
+/// approximations of one core's flow differ.
+pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) -> R {
+    let mut worst = R::zero();
     flow.stream.fill(R::zero());
     flow.normal.fill(R::zero());
     flow.tangential.fill(R::zero());
-    for (i, b, strength) in cores(c) {
+    for (i, b, nodes) in c.each_boundary().filter(|(_, b, _)| b.circulation != R::zero() && b.slots.core_modes > 0) {
+        let columns = [&mut *flow.angle, &mut *flow.sheet, &mut *flow.sheet_x, &mut *flow.sheet_y];
+        write_sheet(c, (i, b, nodes), columns.map(|x| part_mut(x, b.first, b.nodes)));
+    }
+    for (i, strength, sheet) in sheets(c, [flow.angle, flow.sheet, flow.sheet_x, flow.sheet_y]) {
         for (m, target, nodes) in c.each_boundary() {
+            if m == i {
+                // On itself the flow is exactly tangential: Ψ and β are 0.
+                own_flux(&sheet, -strength, part_mut(flow.normal, target.first, target.nodes));
+                continue;
+            }
             let turn = c.pose(i).unturned(c.pose(m).turn);
+            let mut difference = R::zero();
             let values = targets(&nodes, c.pose(m), c.pose(i)).zip(normals(target, &nodes));
             for (k, (z, n)) in values.enumerate() {
-                let [l, d, _] = core_flow(&b.core, z);
-                let slope = turn * n * d;
-                add(flow.stream, target.first + k, strength * l.re);
+                let at = core_flow(&sheet, z, target.first + k, true);
+                let slope = turn * n * at.velocity;
+                add(flow.stream, target.first + k, strength * at.stream);
                 add(flow.normal, target.first + k, strength * slope.re);
-                // On its own ellipse or disc the core flow is exactly tangential.
-                if m != i || b.core.axes[0] == R::zero() {
-                    add(flow.tangential, target.first + k, -strength * slope.im);
-                }
+                add(flow.tangential, target.first + k, -strength * slope.im);
+                difference += cabs(n * (at.slope - at.velocity));
             }
+            worst = worst.max(difference * strength.abs());
         }
     }
     multiply(system.regular, flow.stream, flow.potential);
     system.factors().solve(flow.potential);
+    worst
+}
+
+/// Adds `scale` θ′ h on the flow's own boundary, of which dn is the negative per strength.
+fn own_flux<R: Real>(sheet: &Sheet<'_, R>, scale: R, out: &mut [R]) {
+    if sheet.record.slots.core_modes > 0 {
+        axpy(out, scale, sheet.density);
+        return;
+    }
+    let points = sheet.nodes.points().zip(normals(sheet.record, &sheet.nodes));
+    for (o, (x, n)) in out.iter_mut().zip(points) {
+        *o -= scale * (n * ellipse_flow(&sheet.record.core, x).velocity).re;
+    }
 }
 
 /// How well the nodes resolve the cores' flows, relative to the circulations: their fluxes through every boundary, of which the
 /// integral of dn is −γ of the cores inside and that of β is 0; ten times as much, since what follows from them was found up to
-/// that much less exact about thin bodies. After [`solve`]; O(N).
-pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>) -> R {
+/// that much less exact about thin bodies; how much the tabulated stream functions vary on their own boundaries; and, once, the
+/// difference that [`solve`] returned, found to be at least as large as the error of the gradient (and often far larger). O(N).
+pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, difference: R) -> R {
     let total = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation.abs());
     let all = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation);
-    let mut worst = R::zero();
+    let mut worst =
+        cores(c).fold(difference / R::lit(10.0), |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
     for (_, b, _) in c.each_boundary() {
         let sum = |x: &[R]| part(x, b.first, b.nodes).iter().fold(R::zero(), |sum, x| sum + *x);
         let inside = if b.sign > R::zero() { -all } else { b.circulation };
@@ -157,14 +210,15 @@ fn impulse_of<R: Real>(c: &Configuration<'_, R>, potential: &[R], normal: &[R], 
 /// boundary m by `weights(m, k)`, α = q (c L' + e ν L'') conj(turn_i), R = Re Σ q e iν L'.
 fn add_core_gradient<R: Real>(
     c: &Configuration<'_, R>,
+    columns: [&[R]; 4],
     scale: R,
     weights: impl Fn(&BoundaryRecord<R>, usize, Complex<R>) -> (R, Complex<R>),
     out: &mut [R],
 ) {
-    for (i, b, strength) in cores(c) {
+    for (i, strength, sheet) in sheets(c, columns) {
         let pose = c.pose(i);
         for (m, target, nodes) in c.each_boundary() {
-            if m == i || (b.link.is_none() && target.link.is_none()) {
+            if m == i || (sheet.record.link.is_none() && target.link.is_none()) {
                 continue;
             }
             let own = c.pose(m);
@@ -173,16 +227,16 @@ fn add_core_gradient<R: Real>(
                 (Complex::<R>::default(), R::zero(), R::zero(), R::zero());
             let values = targets(&nodes, own, pose).zip(normals(target, &nodes)).zip(nodes.points());
             for (k, ((z, n), x)) in values.enumerate() {
-                let [_, d, dd] = core_flow(&b.core, z);
+                let FlowAt { slope, velocity, bend, .. } = core_flow(&sheet, z, target.first + k, false);
                 let nu = turn * n;
                 let (c, e) = weights(target, k, x);
-                let alpha = (d * c + e * nu * dd) * pose.turn.conj() * strength;
+                let alpha = (slope * c + e * nu * bend) * pose.turn.conj() * strength;
                 let arm = own.turned(x);
                 sum += alpha;
                 // Re(i α arm) = −Im(α arm)
                 about_target -= (alpha * arm).im;
                 about_core -= (alpha * (shift + arm)).im;
-                spin -= strength * (e * nu * d).im;
+                spin -= strength * (e * nu * velocity).im;
             }
             let linear = complex(sum.re, -sum.im) * scale;
             add_three(c, m, linear, (about_target + spin) * scale, out);
@@ -221,6 +275,7 @@ impl<R: Real> Circulation<'_, '_, R> {
         let (spare, flow) = (&*flow.spare, &**flow);
         add_core_gradient(
             c,
+            [flow.angle, flow.sheet, flow.sheet_x, flow.sheet_y],
             scale,
             |m, k, _| {
                 let i = m.first + k;
@@ -262,8 +317,10 @@ impl<R: Real> Circulation<'_, '_, R> {
         });
         multiply_transposed(system.regular, adjoint, flow.second);
         let second = &*flow.second;
+        let columns = [&*flow.angle, &*flow.sheet, &*flow.sheet_x, &*flow.sheet_y];
         add_core_gradient(
             c,
+            columns,
             -scale,
             |m, k, x| {
                 let e = match m.link {
@@ -279,7 +336,7 @@ impl<R: Real> Circulation<'_, '_, R> {
         );
         // dP/dt beyond its turning: φ̇ and the rates of the cores' data.
         let (stream_rate, normal_rate) = (&mut *flow.second, &mut *flow.adjoint);
-        data_rates(c, qd, stream_rate, normal_rate);
+        data_rates(c, columns, qd, stream_rate, normal_rate);
         for (column, x) in system.regular.chunks_exact(system.unknowns.max(1)).zip(&*stream_rate) {
             axpy(rate, *x, column);
         }
@@ -291,10 +348,10 @@ impl<R: Real> Circulation<'_, '_, R> {
 }
 
 /// Ψ̇ = Σ q Re(L' ż) and dṅ = Σ q Re(ν L'' ż + i (ω_m − ω_i) ν L').
-fn data_rates<R: Real>(c: &Configuration<'_, R>, qd: &[R], stream: &mut [R], normal: &mut [R]) {
+fn data_rates<R: Real>(c: &Configuration<'_, R>, columns: [&[R]; 4], qd: &[R], stream: &mut [R], normal: &mut [R]) {
     stream.fill(R::zero());
     normal.fill(R::zero());
-    for (i, b, strength) in cores(c) {
+    for (i, strength, sheet) in sheets(c, columns) {
         for (m, target, nodes) in c.each_boundary() {
             if m == i {
                 continue;
@@ -305,12 +362,13 @@ fn data_rates<R: Real>(c: &Configuration<'_, R>, qd: &[R], stream: &mut [R], nor
             let values = nodes.points().zip(normals(target, &nodes));
             for (k, (x, n)) in values.enumerate() {
                 let arm = own.turned(x);
-                let [_, d, dd] = core_flow(&b.core, pose.unturned(shift + arm));
+                let z = pose.unturned(shift + arm);
+                let FlowAt { slope, velocity, bend, .. } = core_flow(&sheet, z, target.first + k, false);
                 let zd = pose.unturned(vm.at(arm) - vi.at(shift + arm));
                 let nu = turn * n;
-                let spin = nu * d * (vm.angular - vi.angular);
-                add(stream, target.first + k, strength * (d * zd).re);
-                add(normal, target.first + k, strength * ((nu * dd * zd).re - spin.im));
+                let spin = nu * velocity * (vm.angular - vi.angular);
+                add(stream, target.first + k, strength * (slope * zd).re);
+                add(normal, target.first + k, strength * ((nu * bend * zd).re - spin.im));
             }
         }
     }

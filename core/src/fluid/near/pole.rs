@@ -235,3 +235,19 @@ pub(crate) fn slope_sum<R: Real>(pre: &Preimage<R>, table: &[R], [wx, wy]: [&[R]
     }
     row.factor * pre.rate * scale * total(&sums)
 }
+
+/// Σ_k W_ik w_k and Σ_k D_ik w_k of the terms for one target and a complex density (an empty imaginary part is 0).
+pub(crate) fn sums<R: Real>(pre: &Preimage<R>, table: &[R], [wx, wy]: [&[R]; 2]) -> [Complex<R>; 2] {
+    let (row, (cos, sin)) = (Row::of(pre, wx.len()), turned(table, wx.len(), pre.node));
+    let (mut weights, mut slopes) = (Complex::<R>::default(), Complex::<R>::default());
+    for (first, skip) in blocks(cos.len()) {
+        let [re, im] = cotangents(row.tangent, cos, sin, first);
+        let (x, y) = (load(wx, first, R::zero()), load(wy, first, R::zero()));
+        for i in skip..LANES {
+            let (cot, w) = (complex(re[i], im[i]), complex(x[i], y[i]) * sign::<R>(first + i));
+            weights += cot * w;
+            slopes += (complex(-row.half * cot.im, row.half * cot.re) - (cot * cot + R::one()) * R::HALF) * w;
+        }
+    }
+    [row.factor * weights, row.factor * pre.rate * slopes]
+}

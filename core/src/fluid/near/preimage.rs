@@ -180,8 +180,13 @@ pub(crate) fn find_all<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, near:
             let found = part_mut(preimage_nodes, first, count);
             found.fill(R::Index::of(0));
             let both_walls = record.link.is_none() && target.link.is_none();
-            let wanted =
-                if i == j { c.regraded(i) || (record.link.is_none() && walls_anew) } else { !both_walls || walls_anew };
+            // What a circulating wall induces at another is summed anew.
+            let sheet = record.slots.core_modes > 0 && record.circulation != R::zero();
+            let wanted = if i == j {
+                c.regraded(i) || (record.link.is_none() && walls_anew)
+            } else {
+                !both_walls || walls_anew || sheet
+            };
             let apart = cabs(c.pose(i).origin - c.pose(j).origin) - target.reach;
             let far = i != j && record.sign < R::zero() && target.sign < R::zero() && apart > most * record.reach;
             if !wanted || far {
