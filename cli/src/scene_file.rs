@@ -272,6 +272,7 @@ impl SceneFile {
             Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
             Status::BoundExceeded | Status::Singular => Some(self.more_nodes(error.place)),
+            Status::OutOfMemory => Some(self.largest()),
             Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
@@ -282,6 +283,20 @@ impl SceneFile {
 }
 
 impl SceneFile {
+    /// Which boundary has most nodes, of those that the scene gives.
+    pub fn largest(&self) -> String {
+        let links =
+            self.bodies.iter().enumerate().flat_map(|(b, body)| {
+                body.links.iter().enumerate().map(move |(l, link)| (Place::Link(b, l), link.nodes))
+            });
+        let obstacles = self.obstacles.iter().enumerate().map(|(k, wall)| (Place::Obstacle(k), wall.nodes));
+        let walls = obstacles.chain(self.tank.iter().map(|wall| (Place::Tank, wall.nodes)));
+        match links.chain(walls).max_by_key(|(_, nodes)| *nodes) {
+            Some((place, nodes)) if nodes > 0 => format!("most nodes has {}: {nodes}", self.name_of(place)),
+            _ => "give boundaries fewer nodes, or the scene fewer boundaries".to_owned(),
+        }
+    }
+
     /// What helps where the nodes of a place do not: those that would be taken if the scene gave none.
     fn more_nodes(&self, place: Place) -> String {
         let mut scene = self.clone();

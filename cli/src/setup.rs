@@ -7,7 +7,7 @@ use nekton::status::{Error, Place};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
 use crate::trade::{Choice, Variant, counts, method, unit};
-use nekton::{ModelBuf, SimBuf};
+use nekton::{Model, ModelBuf, Sim, SimBuf};
 
 /// A scene with its model.
 pub struct Setup {
@@ -21,6 +21,22 @@ pub struct Setup {
     pub joints: Vec<(usize, usize)>,
 }
 
+/// Refuses to take more memory than there is: taken all the same, it would end the process, or another one.
+fn afford(scene: &SceneFile, reals: usize) -> Result<(), Problem> {
+    let bytes = reals.saturating_mul(size_of::<f64>());
+    let told = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let available = told
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:")?.trim().strip_suffix("kB")?.trim().parse().ok());
+    match available.map(|kib: usize| kib.saturating_mul(1024)) {
+        Some(available) if bytes > available => {
+            let text = format!("takes {bytes} bytes of memory, and {available} are available");
+            Err(Problem::file(scene.path(), text).hint(scene.largest()))
+        }
+        _ => Ok(()),
+    }
+}
+
 impl Setup {
     /// Reads and compiles a scene.
     pub fn open(path: &Path) -> Result<Self, Problem> {
@@ -29,6 +45,8 @@ impl Setup {
 
     /// Compiles a scene.
     pub fn of(scene: SceneFile) -> Result<Self, Problem> {
+        let need = scene.with_core(|core| Model::requirement(core)).map_err(|e| scene.problem(&e))?;
+        afford(&scene, need.reals)?;
         let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
         let view = model.view();
         let links = scene.core_order();
@@ -58,6 +76,7 @@ impl Setup {
 
     /// Starts a simulation.
     pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
+        afford(&self.scene, Sim::requirement(&self.model.view()).map_err(|e| self.problem(&e))?.reals)?;
         SimBuf::new(self.model.clone(), method(integrator, unit(&self.model.view()))).map_err(|e| self.problem(&e))
     }
 

@@ -34,7 +34,7 @@ fn unknown_key() {
     );
     refuses(
         &changed("output_interval", "zzz"),
-        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, tolerance, shortcuts)",
+        "scene.toml:33: unknown key `zzz` in [run] (allowed: duration, output_interval, integrator, force, quadrature, tolerance, allow_unresolved, shortcuts)",
     );
 }
 

@@ -376,9 +376,9 @@ pub unsafe extern "C" fn nekton_sim_restart(sim: *mut SimHandle<f64>) -> nekton_
 
 /// One step of the method (ADAMS: one step of its own choice). Returns a notice (> 0): STEP_TOO_LONG if the estimated error
 /// of the step is a tenth of a body's reach, or of a radian, or more (see nekton_sim_time_error; GAUSS6 has no estimate);
-/// UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
+/// UNRESOLVED if the bound of the error in space exceeded the scene's tolerance (1e-3 without); diag tells the bound,
 /// when, and what is closest.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
 /// the simulation is then as it was, bit for bit. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_step(sim: *mut SimHandle<f64>, diag: *mut nekton_diag) -> nekton_status {
@@ -479,7 +479,7 @@ pub unsafe extern "C" fn nekton_sim_joint_values(
 }
 
 /// Torque (slider: force) that drives every joint, and its power; n = joints each.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One
 /// evaluation if there was none since the last step. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_joint_torques(
@@ -496,7 +496,7 @@ pub unsafe extern "C" fn nekton_sim_joint_torques(
 }
 
 /// Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_accelerations(
@@ -510,7 +510,7 @@ pub unsafe extern "C" fn nekton_sim_accelerations(
 }
 
 /// Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_mass_matrix(
@@ -524,7 +524,7 @@ pub unsafe extern "C" fn nekton_sim_mass_matrix(
 }
 
 /// Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_added_mass(
@@ -539,7 +539,7 @@ pub unsafe extern "C" fn nekton_sim_added_mass(
 
 /// Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
 /// none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_christoffel(
@@ -554,7 +554,7 @@ pub unsafe extern "C" fn nekton_sim_christoffel(
 
 /// Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
 /// inspection: (3 links)^2 forces.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_christoffel_tensor(
@@ -569,7 +569,7 @@ pub unsafe extern "C" fn nekton_sim_christoffel_tensor(
 
 /// Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
 /// last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_buoyancy(
@@ -584,7 +584,7 @@ pub unsafe extern "C" fn nekton_sim_buoyancy(
 
 /// Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
 /// step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_repulsion(
@@ -599,7 +599,7 @@ pub unsafe extern "C" fn nekton_sim_repulsion(
 
 /// Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
 /// step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_circulation_gradient(
@@ -613,7 +613,7 @@ pub unsafe extern "C" fn nekton_sim_circulation_gradient(
 }
 
 /// Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
 /// per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_gyroscopic(
@@ -627,7 +627,7 @@ pub unsafe extern "C" fn nekton_sim_gyroscopic(
 }
 
 /// Energies at the state shown. One evaluation if there was none since the last step.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_energy(
     sim: *mut SimHandle<f64>,
@@ -652,7 +652,7 @@ pub unsafe extern "C" fn nekton_sim_energy_drift(
 }
 
 /// Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.
-/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread per simulation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nekton_sim_impulse(
     sim: *mut SimHandle<f64>,

@@ -195,6 +195,7 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
         repulsion: Some(Repulsion { alpha: r(4.0), epsilon: r(0.015625) }),
         tank: Some(tank),
         bodies: &bodies,
+        tolerance: Some(r(0.015625)),
         ..Scene::new(r(1.0), r(0.5))
     };
     let model = Arc::new(ModelBuf::new(&scene).unwrap());

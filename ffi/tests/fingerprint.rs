@@ -90,6 +90,8 @@ impl Set {
         s.walls[0].circulation = 0.1;
         let scene = &mut s.scene;
         (scene.gravity, scene.repulsion_epsilon, scene.quadrature) = (0.5, 1e-4, NEKTON_QUADRATURE_PLAIN);
+        // Few nodes, so that it is quick.
+        scene.allow_unresolved = 1;
         (scene.tank, scene.obstacles, scene.obstacle_count) = (&raw const s.walls[2], s.walls.as_ptr(), 2);
         (scene.bodies, scene.body_count) = (s.bodies.as_ptr(), 3);
         set
@@ -125,7 +127,7 @@ fn changes() -> Vec<(&'static str, Change)> {
             force: [|s| s.scene.force = NEKTON_FORCE_BOUNDARY],
             quadrature: [|s| s.scene.quadrature = NEKTON_QUADRATURE_GRADED],
             tolerance: [|s| s.scene.tolerance = 0.5],
-            allow_unresolved: [|s| s.scene.allow_unresolved = 1],
+            allow_unresolved: [|s| s.scene.allow_unresolved = 0],
             // Refused unless it is 0.
             reserved: [],
             shortcuts: [|s| s.scene.shortcuts = 0],

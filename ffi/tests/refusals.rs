@@ -46,7 +46,7 @@ fn a_scene_of_another_version_or_size_is_refused() {
             refused(def.get(), Status::AbiVersion, SCENE, "abi_version");
         });
     }
-    for wrong in [1_u32.wrapping_neg(), 4, 8] {
+    for wrong in [1_u32.wrapping_neg(), 4, 16] {
         with_scene(|def, _, _| {
             def.struct_size = def.struct_size.wrapping_sub(wrong).max(4);
             refused(def.get(), Status::AbiVersion, SCENE, "struct_size");

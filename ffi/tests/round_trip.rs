@@ -130,6 +130,7 @@ macro_rules! round_trip {
             (y.kind, y.harmonics, y.harmonic_count) = (NEKTON_SIGNAL_HARMONIC, c_terms.as_ptr(), 1);
             (c_bodies[1].links, c_bodies[1].link_count) = (c_train.as_ptr(), 3);
             let (mut c_tank, mut c_obstacle) = (wall(), wall());
+            c_tank.nodes = 64;
             (c_tank.shape.kind, c_tank.shape.a, c_tank.shape.b, c_tank.angle) = (NEKTON_SHAPE_ELLIPSE, 9.0, 7.0, 0.1);
             let o = &mut c_obstacle;
             (o.shape.kind, o.shape.points, o.shape.point_count) = (NEKTON_SHAPE_POLYGON, corners.as_ptr(), 3);

@@ -109,6 +109,8 @@ impl Case {
             tank: self.tank.map(|axes| wall(ellipse(axes), zero, R::zero(), self.nodes)),
             repulsion: self.repulsion.map(|[alpha, epsilon]| Repulsion { alpha: r(alpha), epsilon: r(epsilon) }),
             bodies: &bodies,
+            // Whatever the bound says: it is a column of the tables.
+            allow_unresolved: true,
             ..Scene::new(r(self.fluid), r(self.gravity))
         })
     }

@@ -3,7 +3,7 @@
 use nekton::scalar::Real;
 use nekton::scene::{Body, Drive, Joint, JointKind, Link, Mass, Root, Scene, Shape, Wall};
 use nekton::status::{Error, Result};
-use nekton::{Method, ModelBuf, Sim, SimBuf};
+use nekton::{BoundaryRecord, CoordinateRecord, LinkRecord, Method, Model, ModelBuf, ModelMemory, Sim, SimBuf};
 use std::sync::Arc;
 
 pub mod near;
@@ -106,6 +106,23 @@ pub fn adams<R: Real>(tolerance: f64) -> Method<R> {
 /// A simulation that is only evaluated at its initial state.
 pub fn at_start<R: Real>(scene: &Scene<'_, R>) -> SimBuf<R> {
     simulation(scene, Method::Rk4 { step: R::lit(0.01) })
+}
+
+/// Nodes of a scene's links with those that the rule gives by description alone, as without a heap.
+pub fn nodes_by_rule<R: Real>(scene: &Scene<'_, R>) -> Vec<usize> {
+    let need = Model::requirement(scene).unwrap();
+    let (mut links, mut coordinates) =
+        (vec![LinkRecord::default(); need.links], vec![CoordinateRecord::default(); need.coordinates]);
+    let (mut boundaries, mut reals) = (vec![BoundaryRecord::default(); need.boundaries], vec![R::zero(); need.reals]);
+    let memory = &mut ModelMemory {
+        links: &mut links,
+        coordinates: &mut coordinates,
+        boundaries: &mut boundaries,
+        reals: &mut reals,
+    };
+    let head = Model::init(scene, memory).unwrap();
+    let model = Model::view(&head, &links, &coordinates, &boundaries, &reals);
+    (0..need.links).filter_map(|i| model.link(i)).map(|l| l.nodes).collect()
 }
 
 /// The error with which a scene or its simulation is refused.

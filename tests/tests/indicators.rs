@@ -20,7 +20,8 @@ const UNIT: f64 = 1.2; // reach of the largest outline below
 fn pair(shapes: &[Shape<f64>; 2], at: [[f64; 3]; 2], v: [[f64; 3]; 2], nodes: usize, quadrature: Quadrature) -> Looked {
     let links = shapes.map(|s| [link(s, 1.0, nodes)]);
     let bodies = [body(&links[0], at[0], v[0]), body(&links[1], at[1], v[1])];
-    let mut sim = at_start(&Scene { bodies: &bodies, quadrature, ..Scene::new(1.0, 0.0) });
+    // Also where the bound says that the numbers mean nothing.
+    let mut sim = at_start(&Scene { bodies: &bodies, quadrature, allow_unresolved: true, ..Scene::new(1.0, 0.0) });
     let mut sim = sim.view();
     let cheap = sim.indicators().unwrap();
     let energy = sim.energy().unwrap().kinetic_fluid;
@@ -180,9 +181,12 @@ fn a_missed_tolerance_is_noticed_when_and_where_it_is_missed() {
         sim.advance(4.5).unwrap();
         assert_eq!(sim.notice(), None);
     });
+    // A thousandth if nobody asked for less.
     passing(None, |sim| {
         sim.advance(4.0).unwrap();
-        assert!(sim.notice().is_none() && sim.indicators().unwrap().bound() > 1e-4);
+        let bound = sim.indicators().unwrap().bound();
+        assert!(bound > 1e-4);
+        assert_eq!(sim.notice().map(|n| n.1.value), (bound > 1e-3).then_some(bound));
     });
 }
 
@@ -269,19 +273,20 @@ fn automatic_nodes_follow_from_scene_and_tolerance_alone() {
         assert_eq!(model.nodes(Place::Tank), Some(48), "given counts stay");
         assert_eq!((model.nodes(Place::Obstacle(1)), model.nodes(Place::Link(0, 1))), (None, None));
         assert_eq!(model.nodes(Place::Link(0, 0)), Some(model.link(0).unwrap().nodes));
-        assert_eq!(model.plan().tolerance, tolerance.unwrap_or(1e-8));
+        assert_eq!(model.plan().tolerance, tolerance.unwrap_or(1e-3));
         [model.nodes(Place::Link(0, 0)).unwrap(), model.nodes(Place::Obstacle(0)).unwrap()]
     };
     let [coarse, default, fine] = [Some(1e-4), None, Some(1e-12)].map(|t| count(0, t));
     assert!(coarse[0] < default[0] && default[0] < fine[0] && coarse[1] < default[1] && default[1] < fine[1]);
     assert!(default[1] > default[0], "corners take more");
-    assert_eq!(count(0, Some(1e-8)), default);
+    assert_eq!(count(0, Some(1e-6)), default);
     assert_eq!(count(20, None)[0], 20);
     let links = [link(Shape::Ellipse { a: 1.0_f32, b: 0.6 }, 1.0, 0)];
     let bodies = [body(&links, [0.0; 3], [0.1; 3]), body(&links, [2.5, 1.0, 0.0], [0.0; 3])];
     let mut single = at_start(&Scene { bodies: &bodies, ..Scene::new(1.0_f32, 0.0) });
     assert_eq!(single.view().notice(), None);
-    assert!((1e-3..2e-3).contains(&single.view().model().plan().tolerance));
+    // Ten thousand roundings.
+    assert_near(single.view().model().plan().tolerance, 1e4 * f64::from(f32::EPSILON), 1e-9);
 }
 
 #[test]
@@ -397,8 +402,7 @@ fn an_ellipse_alone_gets_the_nodes_that_its_error_in_closed_form_asks_for() {
             let bodies = [body(&links, [0.0; 3], [0.0; 3])];
             let plain = Scene { bodies: &bodies, quadrature: Quadrature::Plain, ..Scene::new(1.0, 0.0) };
             let scene = Scene { tolerance: Some(tolerance), ..plain };
-            let model = ModelBuf::new(&scene).unwrap();
-            let nodes = model.view().nodes(Place::Link(0, 0)).unwrap();
+            let nodes = nodes_by_rule(&scene)[0];
             let error = |nodes: usize| 4.0 * q.powi(nodes as i32) / tolerance;
             let what = format!("{aspect} {tolerance:e}: {nodes} nodes, {:e} of the tolerance", error(nodes));
             // Counts are rounded down, then up to multiples of 4, and at least six to a digit.
@@ -410,7 +414,7 @@ fn an_ellipse_alone_gets_the_nodes_that_its_error_in_closed_form_asks_for() {
 }
 
 #[test]
-fn the_tolerance_that_nobody_gave_is_told_in_both_precisions() {
+fn nodes_are_chosen_for_a_millionth_and_a_thousandth_is_noticed_where_nobody_asked_for_a_tolerance() {
     fn told<R: nekton::scalar::Real>(tolerance: Option<f64>) -> (usize, f64) {
         let links = [link(Shape::Star { radius: R::one(), amplitude: R::lit(0.2), lobes: 3 }, R::one(), 0)];
         let bodies = [body(&links, [R::zero(); 3], [R::zero(); 3])];
@@ -419,10 +423,9 @@ fn the_tolerance_that_nobody_gave_is_told_in_both_precisions() {
         let model = model.view();
         (model.nodes(Place::Link(0, 0)).unwrap(), model.plan().tolerance)
     }
-    assert_eq!(told::<f64>(None), told::<f64>(Some(1e-8)));
-    // Ten thousand roundings.
+    assert_eq!(told::<f64>(None), (told::<f64>(Some(1e-6)).0, 1e-3));
+    // Ten thousand roundings, both.
     assert_eq!(told::<f32>(None), told::<f32>(Some(1e4 * f64::from(f32::EPSILON))));
-    assert_near(told::<f32>(None).1, 1e4 * f64::from(f32::EPSILON), 1e-9);
 }
 
 #[test]
@@ -443,6 +446,62 @@ fn circulation_between_walls_tells_no_error_where_nodes_resolve_it() {
             for told in [sim.indicators().unwrap(), sim.resolution().unwrap()] {
                 assert!(told.bound() < 1e-7, "{quadrature:?}: {told:?}");
             }
+        }
+    }
+}
+
+#[test]
+fn error_of_each_body_is_within_the_bound_whatever_the_ratio_of_sizes() {
+    let large = Shape::Ellipse { a: 1.0, b: 0.5 };
+    for (ratio, speed) in [(1.0, 1.0), (0.1, 1.0), (1e-2, 30.0), (1e-3, 1.0), (1e-4, 1.0), (1e-4, 1e-3), (1e-4, 1e3)] {
+        let small = Shape::Ellipse { a: ratio, b: 0.5 * ratio };
+        // Beside the flank at (cos t, ½ sin t), at a gap of about a small body.
+        let (s, c) = 1.3_f64.sin_cos();
+        let normal = [0.5 * c, s].map(|x| x / (0.5 * c).hypot(s));
+        let place = [c + 2.2 * ratio * normal[0], 0.5 * s + 2.2 * ratio * normal[1], 0.4];
+        let look = |nodes: [usize; 2], tolerance: Option<f64>| {
+            let links = [[link(large, 1.0, nodes[0])], [link(small, 1.0, nodes[1])]];
+            let bodies = [
+                body(&links[0], [0.0; 3], [0.3, 0.2, 0.5]),
+                body(&links[1], place, [-0.2 * speed, 0.4 * speed, 0.3 * speed / ratio]),
+            ];
+            let scene = Scene { bodies: &bodies, tolerance, allow_unresolved: true, ..Scene::new(1.0, 0.0) };
+            let mut sim = at_start(&scene);
+            let mut sim = sim.view();
+            let bound = sim.indicators().unwrap().bound();
+            let noticed = sim.notice().is_some();
+            let motion: Vec<f64> = sim.velocities().to_vec();
+            let added = matrix(&mut sim, |s, out| s.added_mass(out));
+            let momentum = times(&added, &motion);
+            (vector(&mut sim, |s, out| s.christoffel(out)), added, momentum, motion, bound, noticed)
+        };
+        let (exact, mass, momentum, motion, ..) = look([512, 160], None);
+        let reach = [1.0, ratio];
+        let size = |f: &[f64], reach: f64| f[0].abs().max(f[1].abs()).max(f[2].abs() / reach);
+        let own = |k: usize| {
+            let energy = (0..3).map(|i| momentum[3 * k + i] * motion[3 * k + i]).sum::<f64>().abs() / 2.0;
+            size(&exact[3 * k..3 * k + 3], reach[k]).max(energy / reach[k])
+        };
+        let all = own(0).max(own(1));
+        for (nodes, tolerance) in
+            [([0, 0], Some(1e-4)), ([0, 0], None), ([64, 64], None), ([32, 96], None), ([200, 16], None)]
+        {
+            let (force, added, _, _, bound, noticed) = look(nodes, tolerance);
+            let mut worst = 0.0_f64;
+            for k in 0..2 {
+                let wrong: Vec<f64> = (3 * k..3 * k + 3).map(|i| force[i] - exact[i]).collect();
+                worst = worst.max(size(&wrong, reach[k]) / own(k).max(all * reach[k]));
+            }
+            for i in 0..6 {
+                for j in 0..6 {
+                    worst = worst.max((added[i][j] - mass[i][j]).abs() / (mass[i][i] * mass[j][j]).sqrt());
+                }
+            }
+            let what =
+                format!("ratio {ratio:e}, speed {speed:e}, {nodes:?} {tolerance:?}: {worst:.1e}, bound {bound:.1e}");
+            println!("{what}");
+            assert!(worst.min(1.0) <= bound + 1e-9, "{what}");
+            assert!(worst <= tolerance.unwrap_or(1e-3) || noticed, "{what}");
         }
     }
 }

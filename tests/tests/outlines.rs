@@ -1,7 +1,7 @@
 //! One outline described in two ways is one outline: in memory, in nodes, and in what it does.
 
 use nekton::scene::{Quadrature, Scene, Shape};
-use nekton::{Model, ModelBuf, Place};
+use nekton::{Model, ModelBuf};
 use nekton_tests::*;
 
 #[test]
@@ -22,12 +22,12 @@ fn a_rectangle_takes_what_the_polygon_of_its_corners_takes() {
     }
 }
 
-/// Nodes that are chosen for a shape.
+/// Nodes that the rule gives a shape.
 fn chosen(shape: Shape<'_, f64>, quadrature: Quadrature, tolerance: f64) -> usize {
     let links = [link(shape, 1.0, 0)];
     let bodies = [body(&links, [0.0; 3], [0.0; 3])];
     let scene = Scene { bodies: &bodies, quadrature, tolerance: Some(tolerance), ..Scene::new(1.0, 0.0) };
-    ModelBuf::new(&scene).unwrap().view().nodes(Place::Link(0, 0)).unwrap()
+    nodes_by_rule(&scene)[0]
 }
 
 #[test]

@@ -104,7 +104,8 @@ fn look(pair: [Oval; 2], nodes: usize, quadrature: Quadrature, alpha: f64) -> (V
     let links = pair.map(|(axes, _)| [link(Shape::Ellipse { a: axes[0], b: axes[1] }, 1.0, nodes)]);
     let bodies = [body(&links[0], pair[0].1, [0.0; 3]), body(&links[1], pair[1].1, [0.1, 0.2, 0.3])];
     let repulsion = Some(Repulsion { alpha, epsilon: 1.0 });
-    let mut sim = at_start(&Scene { repulsion, quadrature, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+    let mut sim =
+        at_start(&Scene { repulsion, quadrature, bodies: &bodies, allow_unresolved: true, ..Scene::new(0.0, 0.0) });
     let mut sim = sim.view();
     let force = vector(&mut sim, |s, out| s.repulsion(out));
     let (here, full) = (sim.indicators().unwrap(), sim.resolution().unwrap());

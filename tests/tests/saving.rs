@@ -77,6 +77,7 @@ fn model<R: Real>(case: Case, gravity: f64) -> Arc<ModelBuf<R>> {
         repulsion: repulsion.filter(|_| case == Case::NearContact),
         tank: tank.filter(|_| case == Case::Channels),
         tolerance: Some(lit(1e-3)),
+        allow_unresolved: true,
         ..Scene::new(R::one(), lit(if case == Case::LoneSwimmer { 0.0 } else { gravity }))
     };
     Arc::new(ModelBuf::new(&scene).unwrap())

@@ -42,7 +42,7 @@
      (8 * (u) + (boundaries) * (2 * NEKTON_P_RUNGS(NEKTON_P_MOST(nodes, wall_nodes)) + NEKTON_P_OUTLINE(points) + 74) + \
       14 * (boundaries) * (u)))
 #define NEKTON_P_MODEL_REALS(bodies, joints, nodes, walls, wall_nodes, circulation, points, rows, graded) \
-    (NEKTON_P_L(bodies, joints) * (8 * NEKTON_P_S(nodes) + (1 + NEKTON_P_S(circulation)) * NEKTON_P_SQ(nodes)) + \
+    (NEKTON_P_L(bodies, joints) * (8 * NEKTON_P_S(nodes) + (1 + NEKTON_P_S((circulation) && NEKTON_P_L(bodies, joints) + NEKTON_P_S(walls) > 1)) * NEKTON_P_SQ(nodes)) + \
      7 * NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes) + \
      (1 + NEKTON_P_S(circulation)) * NEKTON_P_SQ(NEKTON_P_S(walls) * NEKTON_P_S(wall_nodes)) + \
      (NEKTON_P_L(bodies, joints) + NEKTON_P_S(walls)) * NEKTON_P_OUTLINE(points) + \

@@ -6,7 +6,7 @@
 
 use crate::base::memory::{add, at, axpy, copy, inner, part, put};
 use crate::base::scalar::Real;
-use crate::base::status::Result;
+use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Evaluation};
 use crate::dynamics::kirchhoff::lone_momentum;
 use crate::fluid::potentials::{
@@ -49,7 +49,7 @@ impl<R: Real> Evaluation<'_, R> {
     /// Reduced mass matrix N_pᵀ M N_p of bodies and fluid, factorized.
     ///
     /// # Errors
-    /// `Singular` if it is not positive definite.
+    /// `Singular` if it is not positive definite, with the link that the first coordinate moves for which it is not.
     pub(crate) fn reduce_mass(&mut self, model: &Model<'_, R>) -> Result<()> {
         let (n, rows) = (model.head.plan.free_coordinates, 3 * model.links.len());
         let (columns, reduced) = (&self.columns, &mut self.reduced);
@@ -91,7 +91,10 @@ impl<R: Real> Evaluation<'_, R> {
             }
         }
         self.kept.indicators.mass = asymmetry.max(model.head.lone_resolution[0]);
-        ldl::factor(reduced.mass, n, reduced.inverse_pivots)
+        ldl::factor(reduced.mass, n, reduced.inverse_pivots).map_err(|k| {
+            let link = free().nth(k).and_then(|c| model.links.get(c.link));
+            link.map_or(Status::Singular.into(), |l| Error::new(Status::Singular).at(Place::Link(l.place.0, l.place.1)))
+        })
     }
 
     /// Solves the reduced system in place: `rhs` becomes its solution.

@@ -7,7 +7,7 @@
 use crate::base::complex::{Complex, cis, complex, dot, perp};
 use crate::base::memory::{add, at, copy, part_mut, put, take, take_as};
 use crate::base::scalar::Real;
-use crate::base::status::{Result, Status};
+use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
 use crate::dynamics::forces::circulation::ellipse_flow;
 use crate::fluid::configuration::Configuration;
@@ -38,7 +38,7 @@ impl<R: Real> Evaluation<'_, R> {
         }
         let (head, turn) = (model.head, cis(heading));
         if head.lone_inverse.iter().any(|x| !x.is_finite()) {
-            return Err(Status::Singular.into());
+            return Err(Error::new(Status::Singular).at(Place::Link(0, 0)));
         }
         let mut outer = Twist::default();
         if head.plan.gravity || head.plan.circulation {

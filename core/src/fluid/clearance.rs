@@ -256,6 +256,15 @@ fn search<R: Real>(
     found
 }
 
+/// Radii of two discs: their distances need no search.
+fn discs<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) -> Option<[R; 2]> {
+    let radius = |p: &Placed<'_, R>| match p.record.view(store).curve {
+        Curve::Ellipse(e) if e.a == e.b => Some(e.a),
+        _ => None,
+    };
+    radius(a).zip(radius(b)).map(|(a, b)| [a, b])
+}
+
 /// Whether two outlines come within `limit` of each other, at rest or on their way through a unit of time.
 pub(crate) fn meet<R: Real>(
     a: &Placed<'_, R>,
@@ -264,6 +273,15 @@ pub(crate) fn meet<R: Real>(
     store: &[R],
     limit: R,
 ) -> bool {
+    if let Some([ra, rb]) = discs(a, b, store) {
+        let (from, [ma, mb]) = (a.pose.origin - b.pose.origin, motions.unwrap_or_default());
+        let way = ma.shift - mb.shift;
+        // The distance of the centres takes every value between its least and its largest on the way.
+        let time = (-dot(from, way) / dot(way, way)).max(R::zero()).min(R::one());
+        let (start, end) = (norm(from), norm(from + way));
+        let least = if time.is_finite() { norm(from + way * time).min(start).min(end) } else { start };
+        return least <= ra + rb + limit && start.max(end) >= (ra - rb).abs() - limit;
+    }
     let start = Found { s: R::zero(), t: R::zero(), distance: limit, settled: true };
     let found = search(a, b, motions, store, start, [limit, R::HALF, R::zero()]);
     found.distance < limit || !found.settled
@@ -272,6 +290,14 @@ pub(crate) fn meet<R: Real>(
 /// Signed gap of two outlines: 0 or negative where they touch or cross, and where one body is inside another or outside the
 /// tank.
 pub(crate) fn gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) -> R {
+    if let Some([ra, rb]) = discs(a, b, store) {
+        let between = norm(a.pose.origin - b.pose.origin);
+        return match (a.record.sign > R::zero(), b.record.sign > R::zero()) {
+            (true, _) => ra - rb - between,
+            (_, true) => rb - ra - between,
+            _ => between - ra - rb,
+        };
+    }
     let (square, i, k) = closest_nodes(a, b);
     let (s, t) = (at(a.nodes.t, i), at(b.nodes.t, k));
     let (s, t, distance, _) = refine(a, b, store, s, t, square.sqrt(), false);

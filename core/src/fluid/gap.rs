@@ -11,18 +11,6 @@ use crate::geometry::nodes::{Nodes, targets};
 use crate::geometry::pose::Pose;
 use crate::model::boundary::BoundaryRecord;
 
-/// Whether the polygon of the nodes encloses `z` (crossing number).
-pub(crate) fn encloses<R: Real>(nodes: &Nodes<'_, R>, z: Complex<R>) -> bool {
-    let mut inside = false;
-    let ends = nodes.points().cycle().skip(1);
-    for (a, b) in nodes.points().zip(ends) {
-        if (a.im > z.im) != (b.im > z.im) && z.re < a.re + (b.re - a.re) * (z.im - a.im) / (b.im - a.im) {
-            inside = !inside;
-        }
-    }
-    inside
-}
-
 /// One boundary, placed.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'a, R> {

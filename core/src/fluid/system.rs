@@ -7,7 +7,7 @@ use crate::base::machine::{Machine, Task};
 use crate::base::memory::{axpy, inner, part, part_mut};
 use crate::base::once::once;
 use crate::base::scalar::Real;
-use crate::base::status::{Result, Status};
+use crate::base::status::{Error, Result, Status};
 use crate::fluid::assembly::assemble;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::potentials::potential;
@@ -46,6 +46,15 @@ impl<R: Real> BoundarySystem<'_, R> {
             axpy(out, c, self.column(k));
         }
     }
+}
+
+/// The boundary of which the factors of a singular matrix are worst: whose pivot is no number, or the smallest.
+#[cold]
+fn named<R: Real>(error: Error, c: &Configuration<'_, R>, matrix: &[R], ld: usize) -> Error {
+    let pivots = matrix.iter().step_by(ld.saturating_add(1)).map(|x| if x.is_finite() { x.abs() } else { -R::one() });
+    let worst = pivots.take(c.model.head.plan.unknowns).enumerate().reduce(|a, b| if b.1 < a.1 { b } else { a });
+    let boundary = worst.and_then(|(k, _)| c.model.boundaries.iter().find(|b| k < b.first + b.nodes));
+    boundary.map_or(error, |b| error.at(b.place))
 }
 
 once! {
@@ -92,7 +101,9 @@ once! {
         let begun = |row: usize| motions.chunks_exact(rows.max(1)).rposition(|v| begins(v) < row).map_or(0, |k| k + 1);
         let used = (system.unknowns + columns) * system.ld;
         let done = if ready { walls } else { 0 };
-        factor_further(by, part_mut(system.matrix, 0, used), system.ld, system.unknowns, done, system.pivots, begun)?;
+        let matrix = part_mut(system.matrix, 0, used);
+        factor_further(by, matrix, system.ld, system.unknowns, done, system.pivots, begun)
+            .map_err(|error| named(error, c, system.matrix, system.ld))?;
         let Some((lu, rest)) = system.matrix.split_at_mut_checked(system.unknowns * system.ld) else {
             return Err(Status::Internal.into());
         };

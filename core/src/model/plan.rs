@@ -47,7 +47,7 @@ pub struct Plan {
     pub repulsion: bool,
     /// Circulation.
     pub circulation: bool,
-    /// Relative error in space that the scene asks for; 0: none, no node count is automatic.
+    /// Bound of the relative error in space above which there is a notice: the scene's tolerance, or a thousandth.
     pub tolerance: f64,
     /// Bytes of the model's store of reals.
     pub model_bytes: usize,
@@ -98,9 +98,7 @@ impl fmt::Display for Plan {
             yes(self.repulsion),
             yes(self.circulation)
         )?;
-        if self.tolerance > 0.0 {
-            writeln!(f, "tolerance in space       {:e}", self.tolerance)?;
-        }
+        writeln!(f, "noticed error in space   {:e}", self.tolerance)?;
         writeln!(f, "model memory             {} bytes", self.model_bytes)?;
         writeln!(f, "simulation memory        {} bytes", self.sim_bytes)?;
         write!(f, "operations / evaluation  {:.3e}", self.operations)

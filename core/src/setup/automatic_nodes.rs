@@ -20,9 +20,10 @@ pub(crate) fn target<R: Real>(asked: Option<R>) -> R {
     asked.unwrap_or(R::lit(DEFAULT_TOLERANCE).max(R::lit(1e4) * R::EPSILON))
 }
 
-/// The bound of the relative error above which there is a notice.
+/// The bound of the relative error above which there is a notice: the scene's tolerance, or [`NOTICED_BOUND`], but nothing that automatic
+/// nodes may reach.
 pub(crate) fn noticed<R: Real>(asked: Option<R>) -> R {
-    asked.unwrap_or(R::lit(NOTICED_BOUND))
+    asked.unwrap_or(R::lit(NOTICED_BOUND).max(target(None)))
 }
 
 /// Whether some node count is automatic.
@@ -91,6 +92,10 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
 /// Most nodes that are chosen automatically for one boundary.
 pub(crate) const MOST: usize = 1024;
 
+/// Most nodes of all boundaries together with which a start is tried: a matrix of 128 MiB.
+#[cfg(feature = "alloc")]
+pub const MOST_CHECKED: usize = 4096;
+
 /// Nodes for one corner of a radius relative to the shortest side.
 fn corner(digits: f64, radius: f64) -> f64 {
     digits * (0.4 + 0.5 * Real::ln((1.0 / radius.max(1e-12)).max(1.0)))
@@ -122,6 +127,20 @@ impl<S> Resolved<'_, S> {
         let settings = self.scene.settings();
         let rule = nodes(shape, target(settings.tolerance), settings.quadrature);
         ((rule as f64 * self.factor) as usize).div_ceil(4) * 4
+    }
+    /// Nodes of all boundaries.
+    pub(crate) fn total<R: Real>(&self) -> usize
+    where
+        S: Description<R>,
+    {
+        let walls = self
+            .scene
+            .tank()
+            .into_iter()
+            .chain((0..self.scene.obstacle_count()).filter_map(|i| self.scene.obstacle(i)));
+        let walls = walls.map(|w| (w.nodes, w.shape));
+        let all = walls.chain(each_link(self.scene).map(|(_, _, l)| (l.nodes, l.shape)));
+        all.fold(0, |sum, (nodes, shape)| sum.saturating_add(self.nodes(nodes, &shape)))
     }
     fn wall<'a, R: Real>(&self, w: Wall<'a, R>) -> Wall<'a, R>
     where

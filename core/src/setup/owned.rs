@@ -1,15 +1,24 @@
 //! Models and simulations that own their memory (feature `alloc`).
 
 use crate::base::scalar::Real;
-use crate::base::status::Result;
+use crate::base::status::{Error, Result, Status};
 use crate::model::boundary::BoundaryRecord;
 use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scene::Description;
-use crate::setup::automatic_nodes::{Resolved, automatic, target};
+use crate::setup::automatic_nodes::{MOST_CHECKED, Resolved, automatic, target};
 use crate::setup::compile::ModelMemory;
 use crate::simulation::sim::{Sim, SimHead};
 use crate::simulation::state::Method;
-use alloc::{sync::Arc, vec, vec::Vec};
+use alloc::{sync::Arc, vec::Vec};
+
+/// Memory for `n` of something; `OutOfMemory` with its bytes if there is none.
+fn memory<T: Clone + Default>(n: usize) -> Result<Vec<T>> {
+    let mut memory = Vec::new();
+    let none = Error::new(Status::OutOfMemory).of("bytes", n as f64 * size_of::<T>() as f64);
+    memory.try_reserve_exact(n).map_err(|_| none)?;
+    memory.resize(n, T::default());
+    Ok(memory)
+}
 
 /// A compiled scene that owns its memory. `Send + Sync`.
 #[derive(Clone, Debug)]
@@ -25,7 +34,7 @@ impl<R: Real> ModelBuf<R> {
     /// Compiles a scene; automatic node counts are those that its start needs (see [`Resolved::of`]).
     ///
     /// # Errors
-    /// As [`Model::init`].
+    /// As [`Model::init`]; `OutOfMemory` with the bytes.
     pub fn new(scene: &impl Description<R>) -> Result<Self> {
         if automatic(scene) { ModelBuf::compiled(&Resolved::of(scene)?) } else { ModelBuf::compiled(scene) }
     }
@@ -33,10 +42,8 @@ impl<R: Real> ModelBuf<R> {
     /// Compiles a scene with the counts that its description gives.
     fn compiled(scene: &impl Description<R>) -> Result<Self> {
         let need = Model::requirement(scene)?;
-        let mut links = vec![LinkRecord::default(); need.links];
-        let mut coordinates = vec![CoordinateRecord::default(); need.coordinates];
-        let mut boundaries = vec![BoundaryRecord::default(); need.boundaries];
-        let mut reals = vec![R::zero(); need.reals];
+        let (mut links, mut coordinates) = (memory(need.links)?, memory(need.coordinates)?);
+        let (mut boundaries, mut reals) = (memory(need.boundaries)?, memory(need.reals)?);
         let mut memory = ModelMemory {
             links: &mut links,
             coordinates: &mut coordinates,
@@ -56,7 +63,8 @@ impl<R: Real> ModelBuf<R> {
 impl<'s, S> Resolved<'s, S> {
     /// Compares the bound of the error at the start of a scene with its tolerance: automatic node counts that do not meet it are raised
     /// up to four times, as long as that helps, and those kept that come nearest. Costs a model and an evaluation for each attempt, and
-    /// nothing if no count is automatic.
+    /// nothing if no count is automatic. No attempt has more than [`MOST_CHECKED`] nodes in all: beyond, the rule stands unchecked, and what
+    /// a simulation tells of its bound.
     ///
     /// # Errors
     /// As [`Model::init`].
@@ -71,8 +79,11 @@ impl<'s, S> Resolved<'s, S> {
         let asked = target(scene.settings().tolerance);
         let (mut least, mut in_vain) = (R::MAX, 0);
         for factor in [1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
-            let sim =
-                SimBuf::new(Arc::new(ModelBuf::compiled(&Resolved { scene, factor })?), Method::Rk4 { step: R::one() });
+            let attempt = Resolved { scene, factor };
+            if attempt.total() > MOST_CHECKED {
+                break;
+            }
+            let sim = SimBuf::new(Arc::new(ModelBuf::compiled(&attempt)?), Method::Rk4 { step: R::one() });
             // What keeps a simulation from starting is told when one is made.
             let error = sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound());
             // What more nodes do not halve is rounding, or takes more than there may be.
@@ -100,10 +111,10 @@ impl<R: Real> SimBuf<R> {
     /// Starts a simulation at time 0 and the scene's initial state.
     ///
     /// # Errors
-    /// As [`Sim::head`] and [`Sim::init`].
+    /// As [`Sim::head`] and [`Sim::init`]; `OutOfMemory` with the bytes.
     pub fn new(model: Arc<ModelBuf<R>>, method: Method<R>) -> Result<Self> {
         let mut head = Sim::head(method)?;
-        let mut reals = vec![R::zero(); Sim::requirement(&model.view())?.reals];
+        let mut reals = memory(Sim::requirement(&model.view())?.reals)?;
         Sim::init(model.view(), &mut head, &mut reals)?;
         Ok(SimBuf { model, head, reals })
     }
@@ -114,7 +125,7 @@ impl<R: Real> SimBuf<R> {
     /// As [`Sim::save`].
     pub fn save(&mut self) -> Result<Vec<u8>> {
         let sim = self.view();
-        let mut bytes = vec![0; sim.save_len()];
+        let mut bytes = memory(sim.save_len())?;
         sim.save(&mut bytes)?;
         Ok(bytes)
     }

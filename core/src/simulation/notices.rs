@@ -83,9 +83,15 @@ impl<R: Real> Sim<'_, R> {
         if here.bound() <= R::one() || model.head.allow_unresolved {
             return Ok(here);
         }
-        let worst = self.evaluation.least_resolved(&model);
         let error = Error::new(Status::BoundExceeded).of("bound", here.bound().to_f64());
-        Err(worst.map_or(error, |b| error.at(b.place).beside(b.nodes as f64)))
+        let Some(b) = self.evaluation.least_resolved(&model) else { return Err(error) };
+        let error = error.at(b.place).beside(b.nodes as f64);
+        // Close by, it is the gap that is not resolved.
+        let gap = self.gap();
+        match gap.between {
+            Some((a, other)) if gap.distance < b.spacing => Err(error.at(a).with(other)),
+            _ => Err(error),
+        }
     }
 
     /// An evaluation of the state shown, if it can be trusted at all.

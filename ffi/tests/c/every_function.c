@@ -72,6 +72,7 @@ int main(void) {
     MUST(nekton_scene_def_init(&def, sizeof def, NEKTON_ABI_VERSION));
     def.gravity = (real)0.5;
     def.repulsion_epsilon = (real)0.015625;
+    def.tolerance = (real)0.015625;
     def.tank = &tank;
     def.bodies = &body;
     def.body_count = 1;
