@@ -572,9 +572,9 @@ nekton_status nekton32_sim_restart(struct nekton32_sim *sim);
 /**
  * One step of the method (ADAMS: one step of its own choice). Returns a notice (> 0): STEP_TOO_LONG if the estimated error
  * of the step is a tenth of a body's reach, or of a radian, or more (see nekton32_sim_time_error; GAUSS6 has no estimate);
- * UNRESOLVED if the scene asks for a tolerance in space and the step exceeded it; diag tells the bound of the error,
+ * UNRESOLVED if the bound of the error in space exceeded the scene's tolerance (1e-3 without); diag tells the bound,
  * when, and what is closest.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE, STEP_TOO_SMALL, NO_CONVERGENCE;
  * the simulation is then as it was, bit for bit. One thread per simulation.
  */
 nekton_status nekton32_sim_step(struct nekton32_sim *sim,
@@ -649,7 +649,7 @@ nekton_status nekton32_sim_joint_values(struct nekton32_sim *sim, float *u, floa
 
 /**
  * Torque (slider: force) that drives every joint, and its power; n = joints each.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One
  * evaluation if there was none since the last step. One thread per simulation.
  */
 nekton_status nekton32_sim_joint_torques(struct nekton32_sim *sim,
@@ -660,37 +660,49 @@ nekton_status nekton32_sim_joint_torques(struct nekton32_sim *sim,
 
 /**
  * Accelerations of every link; n = 3 links. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_accelerations(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_accelerations(struct nekton32_sim *sim,
+                                         float *out,
+                                         size_t n,
+                                         struct nekton_diag *diag);
 
 /**
  * Mass matrix: bodies and added mass; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_mass_matrix(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_mass_matrix(struct nekton32_sim *sim,
+                                       float *out,
+                                       size_t n,
+                                       struct nekton_diag *diag);
 
 /**
  * Added mass of the fluid, symmetrized; n = (3 links)^2, column-major. 3 links + 1 solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_added_mass(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_added_mass(struct nekton32_sim *sim,
+                                      float *out,
+                                      size_t n,
+                                      struct nekton_diag *diag);
 
 /**
  * Christoffel force, quadratic in the velocities, by the scene's formula; n = 3 links. One evaluation if there was
  * none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_christoffel(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_christoffel(struct nekton32_sim *sim,
+                                       float *out,
+                                       size_t n,
+                                       struct nekton_diag *diag);
 
 /**
  * Full tensor of the Christoffel force, entry (a, i, j) at a + 3 links (i + 3 links j); n = (3 links)^3. For
  * inspection: (3 links)^2 forces.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
 nekton_status nekton32_sim_christoffel_tensor(struct nekton32_sim *sim,
@@ -701,23 +713,29 @@ nekton_status nekton32_sim_christoffel_tensor(struct nekton32_sim *sim,
 /**
  * Gradient of the potential energy of weight and buoyancy; n = 3 links. One evaluation if there was none since the
  * last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_buoyancy(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_buoyancy(struct nekton32_sim *sim,
+                                    float *out,
+                                    size_t n,
+                                    struct nekton_diag *diag);
 
 /**
  * Gradient of the potential energy of repulsion; n = 3 links. One evaluation if there was none since the last
  * step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_repulsion(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_repulsion(struct nekton32_sim *sim,
+                                     float *out,
+                                     size_t n,
+                                     struct nekton_diag *diag);
 
 /**
  * Gradient of the energy of the circulatory flow; n = 3 links. One evaluation if there was none since the last
  * step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
 nekton_status nekton32_sim_circulation_gradient(struct nekton32_sim *sim,
@@ -727,16 +745,21 @@ nekton_status nekton32_sim_circulation_gradient(struct nekton32_sim *sim,
 
 /**
  * Antisymmetric matrix G of the force G qd of circulation; n = (3 links)^2, column-major. 6 links solves.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, NON_FINITE_STATE. One thread
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread
  * per simulation.
  */
-nekton_status nekton32_sim_gyroscopic(struct nekton32_sim *sim, float *out, size_t n, struct nekton_diag *diag);
+nekton_status nekton32_sim_gyroscopic(struct nekton32_sim *sim,
+                                      float *out,
+                                      size_t n,
+                                      struct nekton_diag *diag);
 
 /**
  * Energies at the state shown. One evaluation if there was none since the last step.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread per simulation.
  */
-nekton_status nekton32_sim_energy(struct nekton32_sim *sim, struct nekton32_energy *energy, struct nekton_diag *diag);
+nekton_status nekton32_sim_energy(struct nekton32_sim *sim,
+                                  struct nekton32_energy *energy,
+                                  struct nekton_diag *diag);
 
 /**
  * Balance of energy, 3 numbers: total - work now minus what it was when an energy was first asked for (ask at the start, too); the
@@ -749,9 +772,11 @@ nekton_status nekton32_sim_energy_drift(struct nekton32_sim *sim,
 
 /**
  * Linear impulse (x, y) and angular impulse about the origin, 3 numbers, of bodies, fluid and circulation.
- * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, NON_FINITE_STATE. One thread per simulation.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread per simulation.
  */
-nekton_status nekton32_sim_impulse(struct nekton32_sim *sim, float *impulse, struct nekton_diag *diag);
+nekton_status nekton32_sim_impulse(struct nekton32_sim *sim,
+                                   float *impulse,
+                                   struct nekton_diag *diag);
 
 /**
  * Error indicators of the steps: the largest over the last call that stepped; before the first step those of the state

@@ -137,7 +137,8 @@ pub struct Wall<'a, R> {
     pub position: [R; 2],
     /// Turn about the outline's own origin.
     pub angle: R,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]); with a heap `ModelBuf::new` looks whether they suffice at the start.
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]). With a heap `ModelBuf::new` looks whether they
+    /// suffice at the start.
     pub nodes: usize,
     /// Circulation around an obstacle (must be 0 for the tank).
     pub circulation: R,
@@ -172,7 +173,8 @@ pub struct Link<'a, R> {
     pub shape: Shape<'a, R>,
     /// Mass properties.
     pub mass: Mass<R>,
-    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]); with a heap `ModelBuf::new` looks whether they suffice at the start.
+    /// Nodes, even, ≥ 8; 0: as many as the scene's tolerance takes ([`Scene::tolerance`]). With a heap `ModelBuf::new` looks whether they
+    /// suffice at the start.
     pub nodes: usize,
     /// Circulation of the fluid around the link, counter-clockwise.
     pub circulation: R,

@@ -66,7 +66,7 @@ fn a_scene_of_another_version_or_size_is_refused() {
                 (def.as_mut_ptr(), size, 1, Status::AbiVersion),
                 (def.as_mut_ptr(), size, 3, Status::AbiVersion),
                 (def.as_mut_ptr(), 0, 2, Status::AbiVersion),
-                (def.as_mut_ptr(), size - 8, 2, Status::AbiVersion),
+                (def.as_mut_ptr(), size - 4, 2, Status::AbiVersion),
                 (def.as_mut_ptr(), size + 1, 2, Status::AbiVersion),
                 (def.as_mut_ptr(), usize::MAX & !7, 2, Status::AbiVersion),
             ] {

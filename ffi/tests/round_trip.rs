@@ -90,6 +90,8 @@ macro_rules! round_trip {
                 tank: Some(tank),
                 obstacles: &obstacles,
                 bodies: &bodies,
+                // No notices.
+                tolerance: Some(9.0),
                 ..Scene::new(1.1 as Real, 0.3)
             };
 
@@ -136,7 +138,7 @@ macro_rules! round_trip {
             (o.shape.kind, o.shape.points, o.shape.point_count) = (NEKTON_SHAPE_POLYGON, corners.as_ptr(), 3);
             (o.position, o.angle, o.nodes, o.circulation) = ([-4.0, 0.0], 0.2, 48, 0.1);
             let mut def = common::$module::scene();
-            (def.fluid_density, def.gravity) = (1.1, 0.3);
+            (def.fluid_density, def.gravity, def.tolerance) = (1.1, 0.3, 9.0);
             (def.repulsion_alpha, def.repulsion_epsilon) = (4.0, 0.01);
             def.tank = &c_tank;
             (def.obstacles, def.obstacle_count) = (&c_obstacle, 1);

@@ -77,8 +77,11 @@ impl<'s, S> Resolved<'s, S> {
             return Ok(best);
         }
         let asked = target(scene.settings().tolerance);
-        let (mut least, mut in_vain) = (R::MAX, 0);
+        let (mut least, mut in_vain, mut likely) = (R::MAX, 0, 1.0);
         for factor in [1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
+            if factor < likely {
+                continue;
+            }
             let attempt = Resolved { scene, factor };
             if attempt.total() > MOST_CHECKED {
                 break;
@@ -94,6 +97,9 @@ impl<'s, S> Resolved<'s, S> {
             if least <= asked || in_vain == 2 {
                 break;
             }
+            // The bound, a hundred times what is seen, falls exponentially with the nodes: much fewer than so many would not do.
+            let digits = |bound: R| Real::ln((bound.to_f64() * 1e-2).clamp(f64::MIN_POSITIVE, 0.1));
+            likely = 0.9 * factor * digits(asked) / digits(error);
         }
         Ok(best)
     }

@@ -3,6 +3,8 @@
 //! Tested by `geometry/curve/tests.rs`.
 
 use crate::base::complex::{Complex, cexp, cexpm1, cis, complex, perp};
+use crate::base::lanes::{LANES, sum_of};
+use crate::base::machine::{Machine, Task};
 use crate::base::scalar::Real;
 
 /// γ(t) = Σ cⱼ e^(i kⱼ t), modes kⱼ = centre + stride (j − down) for j = 0, 1, ….
@@ -26,31 +28,32 @@ impl<'a, R: Real> Fourier<'a, R> {
 
     /// Coefficients from the centre upwards, and from below the centre downwards. Powers then start at the largest
     /// coefficients and lose accuracy only towards the small ones.
-    fn branches(&self) -> [(R, R, impl Iterator<Item = Complex<R>> + 'a); 2] {
+    fn branches(&self) -> [Branch<'a, R>; 2] {
         let pairs = self.coefficients.as_chunks::<2>().0;
         let (low, high) = pairs.split_at_checked(self.down).unwrap_or((&[], &[]));
-        // One type for both directions: exactly one of the two parts is empty.
-        let walk =
-            |up: &'a [[R; 2]], down: &'a [[R; 2]]| up.iter().chain(down.iter().rev()).map(|&[re, im]| complex(re, im));
-        [(self.centre, self.stride, walk(high, &[])), (self.centre - self.stride, -self.stride, walk(&[], low))]
+        let (centre, stride) = (self.centre, self.stride);
+        [
+            Branch { start: centre, stride, coefficients: high, down: false },
+            Branch { start: centre - stride, stride: -stride, coefficients: low, down: true },
+        ]
     }
 
     /// Sums with the powers of `z(k) = e^(ikt)`.
     fn sum(&self, z: impl Fn(R) -> Complex<R>) -> [Complex<R>; 3] {
         let mut jet = [Complex::default(); 3];
-        for (start, stride, coefficients) in self.branches() {
-            let (mut k, mut power, ratio) = (start, z(start), z(stride));
-            for c in coefficients {
-                let term = c * power;
-                let first = perp(term * k);
-                jet[0] += term;
-                jet[1] += first;
-                jet[2] += perp(first * k);
-                k += stride;
-                power *= ratio;
+        for branch in self.branches() {
+            let powers = [z(branch.start), z(branch.stride), z(branch.stride * R::count(LANES))];
+            let sums = if branch.coefficients.len() < LONG {
+                Powers { branch, powers }.run()
+            } else {
+                Machine::here().run(Powers { branch, powers })
+            };
+            for (total, part) in jet.iter_mut().zip(sums) {
+                *total += part;
             }
         }
-        jet
+        let [value, first, second] = jet;
+        [value, perp(first), -second]
     }
 
     pub(super) fn jet(&self, t: Complex<R>) -> [Complex<R>; 3] {
@@ -63,15 +66,177 @@ impl<'a, R: Real> Fourier<'a, R> {
 
     pub(super) fn delta(&self, t: R, u: Complex<R>) -> Complex<R> {
         let mut sum = Complex::default();
-        for (start, stride, coefficients) in self.branches() {
-            let (mut power, ratio) = (cis(t * start), cis(t * stride));
-            // e^(iku) − 1 from mode to mode: relative accuracy in u is kept.
-            let (mut change, step) = (cexpm1(perp(u * start)), cexpm1(perp(u * stride)));
-            for c in coefficients {
-                sum += c * power * change;
-                power *= ratio;
-                change = change * step + change + step;
+        for branch in self.branches() {
+            let (start, stride) = (branch.start, branch.stride);
+            let long = stride * R::count(LANES);
+            let powers = [cis(t * start), cis(t * stride), cis(t * long)];
+            let changes = [start, stride, long].map(|k| cexpm1(perp(u * k)));
+            sum += if branch.coefficients.len() < LONG {
+                Changes { branch, powers, changes }.run()
+            } else {
+                Machine::here().run(Changes { branch, powers, changes })
+            };
+        }
+        sum
+    }
+}
+
+/// Coefficients worth the machine's own vectors.
+const LONG: usize = 2 * LANES;
+
+/// Modes from `start` on, in steps of `stride`.
+#[derive(Clone, Copy)]
+struct Branch<'a, R> {
+    start: R,
+    stride: R,
+    coefficients: &'a [[R; 2]],
+    /// The coefficients stand in the order of falling powers.
+    down: bool,
+}
+
+impl<'a, R: Real> Branch<'a, R> {
+    /// The coefficients in vectors, in the order of the powers, then what fills none.
+    #[inline(always)]
+    fn parts(self) -> (impl Iterator<Item = [[R; LANES]; 2]> + 'a, impl Iterator<Item = Complex<R>> + 'a) {
+        let (up, down) = if self.down { (&[][..], self.coefficients) } else { (self.coefficients, &[][..]) };
+        let ((up, after), (before, down)) = (up.as_chunks::<LANES>(), down.as_rchunks::<LANES>());
+        let lane = |c: &[[R; 2]; LANES], back: bool| {
+            let (mut re, mut im) = ([R::zero(); LANES], [R::zero(); LANES]);
+            for ((x, y), [a, b]) in re.iter_mut().zip(im.iter_mut()).zip(c) {
+                (*x, *y) = (*a, *b);
             }
+            if back {
+                re.reverse();
+                im.reverse();
+            }
+            [re, im]
+        };
+        let chunks = up.iter().map(move |c| lane(c, false)).chain(down.iter().rev().map(move |c| lane(c, true)));
+        (chunks, after.iter().chain(before.iter().rev()).map(|&[re, im]| complex(re, im)))
+    }
+}
+
+type Vector<R> = [R; LANES];
+
+/// Lane by lane.
+#[inline(always)]
+fn by<R: Real>(a: Vector<R>, b: Vector<R>, f: impl Fn(R, R) -> R) -> Vector<R> {
+    let mut out = a;
+    for (o, b) in out.iter_mut().zip(b) {
+        *o = f(*o, b);
+    }
+    out
+}
+
+#[inline(always)]
+fn plus<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+    by(a, b, |a, b| a + b)
+}
+
+#[inline(always)]
+fn times<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
+    by(a, b, |a, b| a * b)
+}
+
+/// Product of complex numbers.
+#[inline(always)]
+fn product<R: Real>([a, b]: [Vector<R>; 2], [x, y]: [Vector<R>; 2]) -> [Vector<R>; 2] {
+    [by(times(a, x), times(b, y), |p, q| p - q), plus(times(a, y), times(b, x))]
+}
+
+#[inline(always)]
+fn all<R: Real>(z: Complex<R>) -> [Vector<R>; 2] {
+    [[z.re; LANES], [z.im; LANES]]
+}
+
+#[inline(always)]
+fn first_of<R: Real>([re, im]: [Vector<R>; 2]) -> Complex<R> {
+    let ([re, ..], [im, ..]) = (re, im);
+    complex(re, im)
+}
+
+/// Lane by lane, the first value and what comes of it again and again.
+#[inline(always)]
+fn spread<R: Real>(first: Complex<R>, next: impl Fn(Complex<R>) -> Complex<R>) -> [[R; LANES]; 2] {
+    let (mut re, mut im, mut z) = ([R::zero(); LANES], [R::zero(); LANES], first);
+    for (x, y) in re.iter_mut().zip(im.iter_mut()) {
+        (*x, *y) = (z.re, z.im);
+        z = next(z);
+    }
+    [re, im]
+}
+
+/// Σ c zᵏ, Σ k c zᵏ, Σ k² c zᵏ of one branch, given the powers `start`, `stride` and `LANES` times it.
+struct Powers<'a, R> {
+    branch: Branch<'a, R>,
+    powers: [Complex<R>; 3],
+}
+
+impl<R: Real> Task for Powers<'_, R> {
+    type Output = [Complex<R>; 3];
+    #[inline(always)]
+    fn run(self) -> [Complex<R>; 3] {
+        let Powers { branch, powers: [first, ratio, leap] } = self;
+        let (chunks, rest) = branch.parts();
+        let mut power = spread(first, |z| z * ratio);
+        let leap = all(leap);
+        let [mut k, _] = spread(complex(branch.start, R::zero()), |k| complex(k.re + branch.stride, R::zero()));
+        let far = [branch.stride * R::count(LANES); LANES];
+        let [mut value, mut slope, mut bend] = [[[R::zero(); LANES]; 2]; 3];
+        for c in chunks {
+            let [u, v] = product(c, power);
+            let first = [times(k, u), times(k, v)];
+            let second = first.map(|x| times(k, x));
+            value = [plus(value[0], u), plus(value[1], v)];
+            slope = [plus(slope[0], first[0]), plus(slope[1], first[1])];
+            bend = [plus(bend[0], second[0]), plus(bend[1], second[1])];
+            (power, k) = (product(power, leap), plus(k, far));
+        }
+        let mut out = [value, slope, bend].map(|[a, b]| complex(sum_of(a), sum_of(b)));
+        let ([mut k, ..], mut power) = (k, first_of(power));
+        for c in rest {
+            let term = c * power;
+            for (sum, factor) in out.iter_mut().zip([R::one(), k, k * k]) {
+                *sum += term * factor;
+            }
+            k += branch.stride;
+            power *= ratio;
+        }
+        out
+    }
+}
+
+/// Σ c zᵏ (e^(iku) − 1) of one branch: the same powers, and the changes of their modes. e^(iku) − 1 goes from mode to mode, so that its
+/// relative accuracy in u is kept.
+struct Changes<'a, R> {
+    branch: Branch<'a, R>,
+    powers: [Complex<R>; 3],
+    changes: [Complex<R>; 3],
+}
+
+impl<R: Real> Task for Changes<'_, R> {
+    type Output = Complex<R>;
+    #[inline(always)]
+    fn run(self) -> Complex<R> {
+        let Changes { branch, powers: [first, ratio, leap], changes: [change, step, far] } = self;
+        let (chunks, rest) = branch.parts();
+        let mut power = spread(first, |z| z * ratio);
+        let mut moved = spread(change, |z| z * step + z + step);
+        let (leap, far) = (all(leap), all(far));
+        let mut sum = [[R::zero(); LANES]; 2];
+        for c in chunks {
+            let [u, v] = product(product(c, power), moved);
+            sum = [plus(sum[0], u), plus(sum[1], v)];
+            power = product(power, leap);
+            let [s, t] = product(moved, far);
+            moved = [plus(plus(s, moved[0]), far[0]), plus(plus(t, moved[1]), far[1])];
+        }
+        let [a, b] = sum.map(sum_of);
+        let (mut sum, mut power, mut change) = (complex(a, b), first_of(power), first_of(moved));
+        for c in rest {
+            sum += c * power * change;
+            power *= ratio;
+            change = change * step + change + step;
         }
         sum
     }

@@ -241,23 +241,30 @@ impl<R: Real> OutlineView<'_, R> {
         walk(&self.grading, n, &mut |jet| visit(self.node_of(jet)))
     }
 
-    /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule in s, exact to
-    /// rounding; closed form for ellipses. Errors: `Internal` as for the nodes.
+    /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule, in s for
+    /// polygons, exact to rounding; closed form for ellipses. Errors: `Internal` as for the nodes.
     pub fn properties(&self) -> Result<AreaProperties<R>> {
-        let modes = match &self.curve {
+        let (n, graded) = match &self.curve {
             Curve::Ellipse(ellipse) => return Ok(ellipse.properties()),
-            Curve::Polygon(_) => 0,
-            // Nodes per wave of the highest mode.
+            Curve::Polygon(_) => ((self.grading.rungs() * 8).max(2048), true),
+            // Of the moments the rule in t leaves nothing from four times the highest mode on; the perimeter is near rounding too.
             Curve::Fourier(fourier) => {
-                fourier.modes().fold(R::zero(), |top, (k, _)| top.max(k.abs())).to_f64() as usize
+                let modes = fourier.modes().fold(R::zero(), |top, (k, _)| top.max(k.abs())).to_f64() as usize;
+                ((modes * 6).max(2048), false)
             }
         };
-        let n = (self.grading.rungs() * 8).max(modes * 16).max(2048);
+        let visit = |n: usize, mut visit: &mut dyn FnMut(Node<R>)| {
+            if graded {
+                return self.walk(n, &mut visit);
+            }
+            (0..n).for_each(|k| visit(self.node_of([R::TAU * R::count(k) / R::count(n), R::one(), R::zero()])));
+            Ok(())
+        };
         let step = R::TAU / R::count(n);
         let origin = (self.curve.jet_real(R::zero())[0] + self.curve.jet_real(R::PI)[0]) * R::HALF;
         let (mut area, mut first, mut polar, mut perimeter) =
             (R::zero(), Complex::<R>::default(), R::zero(), R::zero());
-        self.walk(n, |node| {
+        visit(n, &mut |node| {
             let z = node.x - origin;
             let flux = cross(z, node.dx);
             area += flux;
@@ -270,7 +277,7 @@ impl<R: Real> OutlineView<'_, R> {
         let centroid = origin + shift;
         let (area, polar) = (area * step * R::HALF, polar * step / R::lit(4.0));
         let (mut reach, mut farthest) = (R::zero(), R::zero());
-        self.walk(n / 4, |node| {
+        visit(n / 4, &mut |node| {
             let z = node.x - centroid;
             if cabs(z) > reach {
                 (reach, farthest) = (cabs(z), node.t);
