@@ -89,6 +89,11 @@ impl Values {
         })
     }
 
+    fn notices(&self, setup: &Setup) -> Vec<String> {
+        let bound = self.resolution.iter().find(|(name, _)| *name == "bound").map_or(0.0, |(_, bound)| *bound);
+        setup.notices().into_iter().chain(setup.unresolved(bound)).collect()
+    }
+
     fn json(&self, setup: &Setup) -> Value {
         let object = |pairs: &[(&'static str, f64)]| -> Value {
             Value::Object(pairs.iter().map(|(k, v)| ((*k).to_owned(), json!(v))).collect())
@@ -124,7 +129,7 @@ impl Values {
         });
         let outlines = setup.scene.outlines().into_iter().map(|(whose, what)| (whose, json!(what)));
         out["outlines"] = Value::Object(outlines.collect());
-        out["notices"] = json!(setup.notices());
+        out["notices"] = json!(self.notices(setup));
         out
     }
 
@@ -170,7 +175,7 @@ impl Values {
         for (whose, what) in setup.scene.outlines() {
             let _ = write!(text, "\noutline of {whose}: {what}");
         }
-        for notice in setup.notices() {
+        for notice in self.notices(setup) {
             let _ = write!(text, "\nnotice: {notice}");
         }
         text

@@ -3,8 +3,11 @@
 use std::path::Path;
 
 use crate::ending::{Ending, say};
-use crate::scene_file::Problem;
+use crate::scene_file::{Integrator, Problem};
 use crate::setup::Setup;
+
+/// Nodes up to which the bound of the error at the start is looked at: a fraction of a second.
+const MOST: usize = 2048;
 
 /// Prints the plan.
 pub fn plan(path: &Path) -> Result<Ending, Problem> {
@@ -14,7 +17,15 @@ pub fn plan(path: &Path) -> Result<Ending, Problem> {
     for (whose, what) in setup.scene.outlines() {
         say(&format!("outline of {whose}: {what}"));
     }
-    for notice in setup.notices() {
+    let mut notices = setup.notices();
+    // What keeps a simulation from starting is told when one is run.
+    if setup.model.view().plan().unknowns <= MOST
+        && let Ok(mut sim) = setup.simulate(Integrator::Rk4 { step: 1.0 })
+        && let Ok(resolution) = sim.view().resolution()
+    {
+        notices.extend(setup.unresolved(resolution.bound()));
+    }
+    for notice in notices {
         say(&format!("notice: {notice}"));
     }
     Ok(Ending::Complete)

@@ -99,6 +99,11 @@ impl SceneFile {
         links.chain(tank).chain(walls).filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
     }
 
+    /// Of every link in the user's order, the area of the polygon through the points of its curve, if it is one.
+    pub fn polygon_areas(&self) -> impl Iterator<Item = Option<f64>> {
+        self.bodies.iter().flat_map(|b| &b.links).map(|l| l.shape.polygon_area())
+    }
+
     /// The text of the file.
     pub fn text(&self) -> &str {
         self.source.text()
@@ -269,12 +274,19 @@ impl SceneFile {
                 other.map(|l| format!("move them apart; the other is placed on line {l}"))
             }
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
-            Status::SelfIntersection => Some("list the points in order along the outline".to_owned()),
+            Status::SelfIntersection => Some(
+                "list the points in order along the outline; a curve through uneven points may cross itself where the polygon does not: \
+                 give more points there, or `polygon`"
+                    .to_owned(),
+            ),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
             Status::BoundExceeded | Status::Singular => Some(self.more_nodes(error.place)),
             Status::OutOfMemory => Some(self.largest()),
             Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
+            Status::BadShape if error.what == "point" || error.what == "vertex" => {
+                Some("it repeats the one before it, counted from 0: leave one out".to_owned())
+            }
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
             _ => None,
         };

@@ -21,6 +21,9 @@ pub struct Setup {
     pub joints: Vec<(usize, usize)>,
 }
 
+/// By which the areas of a curve and of the polygon through its points may differ: eight points of a circle do by 10 %.
+const BULGE: f64 = 0.12;
+
 /// Refuses to take more memory than there is: taken all the same, it would end the process, or another one.
 fn afford(scene: &SceneFile, reals: usize) -> Result<(), Problem> {
     let bytes = reals.saturating_mul(size_of::<f64>());
@@ -96,10 +99,34 @@ impl Setup {
         links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
     }
 
+    /// What there is to say of a bound of the error in space.
+    pub fn unresolved(&self, bound: f64) -> Option<String> {
+        let asked = self.model.view().plan().tolerance;
+        (bound > asked).then(|| {
+            let what = "the error in space may be as large as";
+            format!("{what} {bound:.1e}, asked {asked:.1e}: give boundaries more nodes, or none, and they get what they need")
+        })
+    }
+
     /// What set-up mended, and what the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         let view = self.model.view();
         let mended = view.notices().map(|(place, status)| format!("{}: {}", self.scene.name_of(place), status.text()));
-        mended.chain(self.scene.notices()).collect()
+        mended.chain(self.bulging()).chain(self.scene.notices()).collect()
+    }
+
+    /// Curves that enclose much more or less than the polygons through their points.
+    fn bulging(&self) -> impl Iterator<Item = String> {
+        let view = self.model.view();
+        let links = self.links.iter().zip(self.scene.labels()).zip(self.scene.polygon_areas());
+        links.filter_map(move |((core, label), polygon)| {
+            let (polygon, curve) = (polygon?, view.link(*core)?.area);
+            ((curve - polygon).abs() > BULGE * polygon).then(|| {
+                format!(
+                    "link `{label}`: the smooth curve through its points encloses {curve:.4e} m², the polygon {polygon:.4e} m²: for an \
+                     outline with corners use `polygon`, else give more points"
+                )
+            })
+        })
     }
 }

@@ -451,6 +451,46 @@ fn energy_that_no_work_explains_is_one_notice_on_the_terminal_and_in_the_report(
 }
 
 #[test]
+fn a_bound_above_a_thousandth_is_noticed_everywhere_and_above_one_refused_with_what_would_do() {
+    let bare = |nodes: &str, run: &str| {
+        format!(
+            "[fluid]\ndensity = 1.0\n[[body]]\n[[body.link]]\nshape = {{ ellipse = [1.0, 0.2] }}\n{nodes}\n\
+             [[body]]\nposition = [0.0, 0.6]\nvelocity = [1.0, 0.0]\n[[body.link]]\nshape = {{ ellipse = [1.0, 0.2] }}\n{nodes}\n\
+             [run]\nduration = 0.1\n{run}\n"
+        )
+    };
+    let say = |place: &Place, command: &[&str]| {
+        let done = place.nekton(command);
+        assert_eq!(done.code, Some(0), "{command:?} {}", done.err);
+        done.out
+    };
+    let commands = [&["plan", "scene.toml"][..], &["evaluate", "scene.toml"], &["evaluate", "--json", "scene.toml"]];
+    for (nodes, noticed) in [("nodes = 20", true), ("nodes = 64", false), ("", false)] {
+        let place = Place::new(&bare(nodes, ""));
+        for command in commands {
+            let out = say(&place, command);
+            assert_eq!(out.contains("the error in space may be as large as"), noticed, "{command:?} {out}");
+        }
+        assert_eq!(place.run().out.contains("the error in space may exceed"), noticed, "{nodes}");
+    }
+    let few = Place::new(&bare("nodes = 10", ""));
+    for command in [&["evaluate", "scene.toml"][..], &["run", "scene.toml", "--out", "results"]] {
+        let done = few.nekton(command);
+        let told = format!("{}{}", done.out, done.err);
+        assert!(done.code == Some(2) || done.code == Some(3), "{command:?} {told}");
+        assert!(told.contains("more nodes are needed (bound = "), "{command:?} {told}");
+    }
+    assert!(
+        few.nekton(&["evaluate", "scene.toml"]).err.contains("without `nodes` it gets "),
+        "{}",
+        few.nekton(&["evaluate", "scene.toml"]).err
+    );
+    let allowed = Place::new(&bare("nodes = 10", "allow_unresolved = true"));
+    assert_eq!(allowed.run().code, Some(0));
+    assert!(say(&allowed, &["evaluate", "scene.toml"]).contains("notice: the error in space"));
+}
+
+#[test]
 fn automatic_nodes_are_shown_by_the_plan() {
     let place = Place::new(&changed("nodes = 32", "nodes = \"auto\""));
     let plan = place.nekton(&["plan", "scene.toml"]);

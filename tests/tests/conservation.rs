@@ -209,6 +209,15 @@ fn momentum_form_gives_the_same_motion_as_the_acceleration_form() {
 }
 
 #[test]
+fn gyroscopic_matrix_without_circulation_is_zero_whatever_the_memory_held() {
+    let links = three(32, [0.0; 3]);
+    let bodies = bodies(&links);
+    let mut sim = at_start(&Scene { bodies: &bodies, ..Scene::new(1.1, 0.0) });
+    let g = matrix(&mut sim.view(), |sim, out| sim.gyroscopic(out)).concat();
+    assert!(g.iter().all(|x| *x == 0.0), "{g:?}");
+}
+
+#[test]
 fn gyroscopic_matrix_is_antisymmetric_and_does_no_work() {
     let links = three(64, [0.6, -0.9, 0.4]);
     let bodies = bodies(&links);

@@ -323,6 +323,48 @@ fn ten_thousand_placements_are_told_apart_as_by_brute_force() {
 }
 
 #[test]
+fn discs_that_nearly_fill_their_tank_or_pass_each_other_closely_are_told_from_contact() {
+    let one = [link(disc(1.0), 1.0, 16)];
+    for (radius, offset, clear) in [
+        (1.0 + 1e-3, 0.9e-3, true),
+        (1.0 + 1e-3, 1.1e-3, false),
+        (1.0 + 1e-6, 0.5e-6, true),
+        (1.0 + 1e-6, 1.5e-6, false),
+        (2.0, 0.999, true),
+        (2.0, 1.001, false),
+    ] {
+        let bodies = [body(&one, [0.0; 3], [0.0; 3])];
+        let tank = Some(wall(disc(radius), [0.0; 2], 0.0, 16));
+        let mut sim = at_start(&Scene { tank, bodies: &bodies, ..Scene::new(0.0, 0.0) });
+        let mut sim = sim.view();
+        let mut state = sim.state().to_vec();
+        for turn in [0.0_f64, 2.0, 4.0] {
+            (state[0], state[1]) = (offset * turn.cos(), offset * turn.sin());
+            let told = sim.set_state(0.0, &state).map_err(|e| e.status);
+            assert_eq!(told, if clear { Ok(()) } else { Err(Status::Contact) }, "{radius} {offset}");
+            if clear {
+                assert_near(sim.gap().distance, radius - 1.0 - offset, 1e-15);
+            }
+        }
+    }
+    // One step past a disc that rests, at a given distance of the centres, from far to far; or up to it, or away from it.
+    for (distance, from, to, clear) in [
+        (2.0 + 1e-6, -30.0, 30.0, true),
+        (2.0 - 1e-6, -30.0, 30.0, false),
+        (0.0, -30.0, 30.0, false),
+        (0.0, -30.0, -2.0 - 1e-6, true),
+        (0.0, -30.0, -1.9, false),
+        (0.0, 2.1, 30.0, true),
+    ] {
+        let bodies =
+            [body(&one, [from, distance, 0.0], [(to - from) / 0.1, 0.0, 3.0]), body(&one, [0.0; 3], [0.0, 0.0, -1.0])];
+        let mut sim = simulation(&Scene { bodies: &bodies, ..Scene::new(0.0, 0.0) }, Method::Rk4 { step: 0.1 });
+        let told = sim.view().step().map_err(|e| e.status);
+        assert_eq!(told, if clear { Ok(()) } else { Err(Status::Contact) }, "{distance} {from} {to}");
+    }
+}
+
+#[test]
 fn a_fast_body_meets_what_is_on_its_way_and_nothing_else() {
     let mut random = Numbers::new(0x5eed_c047_ac70_0002);
     let (mut clear, mut met) = (0, 0);

@@ -34,6 +34,11 @@ impl Outline {
         Outline { points, told }
     }
 
+    /// Area of the polygon through the points.
+    pub fn polygon_area(&self) -> f64 {
+        0.5 * twice_area(&self.points).abs()
+    }
+
     /// The file that an item names.
     pub fn open(from: &Item<'_>) -> Outcome<Self> {
         let path = from.source.relative(from.text()?);
@@ -43,6 +48,14 @@ impl Outline {
         // By the name in the scene: where the scene is, is of no importance.
         Ok(Self::new(points, &format!("{}{kind}", from.text()?)))
     }
+}
+
+/// Twice the signed area of the polygon through points.
+fn twice_area(points: &[[f64; 2]]) -> f64 {
+    // About one of them: far from the origin the digits would be lost.
+    let [x, y] = points.first().copied().unwrap_or_default();
+    let pairs = points.iter().zip(points.iter().cycle().skip(1));
+    pairs.map(|(p, q)| (p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)).sum()
 }
 
 /// A number with six digits.
@@ -56,10 +69,7 @@ fn description(points: &[[f64; 2]]) -> String {
         let all = points.iter().map(|p| p[c]);
         all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
     };
-    let ([x, _], [y, _]) = (range(0), range(1));
-    // About a corner of the box: far from the origin the digits would be lost.
-    let pairs = points.iter().zip(points.iter().cycle().skip(1));
-    let twice: f64 = pairs.map(|(p, q)| (p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)).sum();
+    let twice = twice_area(points);
     let way = if twice < 0.0 { "clockwise" } else { "counter-clockwise" };
     let size = |[a, b]: [f64; 2]| six(b - a);
     format!(

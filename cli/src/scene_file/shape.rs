@@ -92,6 +92,14 @@ impl ShapeDef {
         }
     }
 
+    /// Area of the polygon through the points of a curve.
+    pub fn polygon_area(&self) -> Option<f64> {
+        match self {
+            ShapeDef::Curve(outline) => Some(outline.polygon_area()),
+            _ => None,
+        }
+    }
+
     /// What the user is told of points that the scene file does not show.
     pub fn told(&self) -> Option<&str> {
         match self {

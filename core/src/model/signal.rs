@@ -368,4 +368,18 @@ mod tests {
         assert!((seen(1000.1) - 0.399).abs() < 1e-9);
         assert_eq!(seen(1000.5), 5000.0);
     }
+
+    #[test]
+    fn a_window_is_a_kink_where_its_ramps_begin_and_nowhere_else() {
+        let terms = [Harmonic { amplitude: 0.7, frequency: 2.0, phase: 0.3, offset: 0.1 }];
+        let window = Some(Window { from: 1.0, to: 5.0, ramp: 1.0 });
+        let mut store = [0.0; 4];
+        let record = Signal::Harmonic { terms: &terms, window }.compile(&mut store, 0, 0, true).unwrap();
+        for k in 0..=700 {
+            let t = 0.01 * f64::from(k);
+            // Within a step of 0.1 that ends at t, not at its beginning.
+            let expected = [1.0, 4.0].into_iter().any(|edge: f64| t > edge - 0.005 && t < edge + 0.095);
+            assert_eq!(record.kinks_at(true, t, 0.1, &store), expected, "{t}");
+        }
+    }
 }

@@ -6,8 +6,8 @@ use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::geometry::curve::{SHARP, distinct};
 #[cfg(feature = "alloc")]
-use crate::scene::{Body, Link, Scene, Wall};
-use crate::scene::{Description, Quadrature, Shape, each_link};
+use crate::scene::{Body, Description, Link, Scene, Wall, each_link};
+use crate::scene::{Quadrature, Shape};
 
 /// Tolerance in space of automatic nodes when the scene asks for none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-6;

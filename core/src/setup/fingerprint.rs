@@ -380,6 +380,23 @@ mod tests {
     }
 
     #[test]
+    fn a_term_that_goes_over_to_the_next_motion_changes_the_fingerprint() {
+        use crate::scene::{Harmonic, Signal};
+        let term = |frequency| Harmonic { amplitude: 0.5, frequency, phase: 0.0, offset: 0.0 };
+        let terms = [term(1.0), term(2.0), term(3.0)];
+        let of = |first: usize| {
+            let (one, other) = terms.split_at(first);
+            let signal = |terms| Signal::Harmonic { terms, window: None };
+            let root = Root::Prescribed([signal(one), signal(other), Signal::Constant(0.0)]);
+            let shape = Shape::Ellipse { a: 1.0, b: 0.5 };
+            let links = [Link { shape, mass: Mass::Density(1.0), nodes: 16, circulation: 0.0, joint: None }];
+            let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root, links: &links }];
+            fingerprint(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) })
+        };
+        assert_ne!(of(1), of(2));
+    }
+
+    #[test]
     fn precisions_automatic_counts_and_the_sign_of_zero_are_told_apart() {
         fn of<R: Real>(nodes: usize, angle: f64) -> u64 {
             let shape = Shape::Ellipse { a: R::one(), b: R::HALF };

@@ -22,6 +22,8 @@ const MOST_TIPS: usize = 32;
 const PER_CORNER: usize = 64;
 /// Samples closer than this part of their spacing cannot be told from touching.
 const TOUCH: f64 = 1e-3;
+/// The same between the straight flanks of a polygon, which may be thin.
+const FLANKS: f64 = 1e-6;
 
 /// Parameters of the sharpest bends of a sampled curve, with γ's scale there: local maxima of |curvature| k with
 /// k P/2π > 2, ladder scale 1/(k |γ′|).
@@ -322,7 +324,9 @@ impl<R: Real> Shape<'_, R> {
                 let n = points.len();
                 let size = (0..n).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0))));
                 for k in 0..n {
-                    if (0..k).any(|j| cabs(p(k) - p(j)) <= R::EPSILON * R::lit(64.0) * size) {
+                    // Of many points, those of which others repeat an earlier one are left to the test for crossings.
+                    let others = if n > 512 { k.saturating_sub(1)..k } else { 0..k };
+                    if others.chain(0..k.min(1)).any(|j| cabs(p(k) - p(j)) <= R::EPSILON * R::lit(64.0) * size) {
                         let neighbour = cabs(p(k) - p(k.saturating_sub(1))) <= R::EPSILON * R::lit(64.0) * size;
                         let closing = k + 1 == n && cabs(p(k) - p(0)) <= R::EPSILON * R::lit(64.0) * size;
                         let status = if neighbour || closing { Status::BadShape } else { Status::SelfIntersection };
@@ -413,7 +417,7 @@ fn grade_corners<R: Real>(
             *p = [node.x.re, node.x.im];
         }
     })?;
-    match crossing(positions, part_mut(boxes, 0, boxes_len(samples)), R::zero(), R::lit(TOUCH)) {
+    match crossing(positions, part_mut(boxes, 0, boxes_len(samples)), R::zero(), R::lit(FLANKS)) {
         Some(_) => Err(Error::new(Status::OutOfRange).of("radius", radius.unwrap_or(R::NAN).to_f64())),
         None => Ok(outline),
     }

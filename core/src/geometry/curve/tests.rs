@@ -390,6 +390,7 @@ fn bad_measures_are_named() {
         (Shape::Rectangle { width: 1.0, height: 1.0, radius: Some(nan) }, Status::NotFinite, "radius"),
         (Shape::Polygon { vertices: &square, radius: Some(0.0) }, Status::OutOfRange, "radius"),
         (Shape::Polygon { vertices: &square, radius: Some(-0.1) }, Status::OutOfRange, "radius"),
+        (Shape::Polygon { vertices: &square, radius: Some(0.51) }, Status::OutOfRange, "radius"),
         (Shape::Polygon { vertices: &WEDGE, radius: Some(0.2) }, Status::OutOfRange, "radius"),
         (Shape::Polygon { vertices: &hole, radius: r }, Status::NotFinite, "vertex"),
         (Shape::Polygon { vertices: &line, radius: r }, Status::BadShape, "area"),
