@@ -295,15 +295,25 @@ impl SceneFile {
 }
 
 impl SceneFile {
-    /// Which boundary has most nodes, of those that the scene gives.
-    pub fn largest(&self) -> String {
+    /// Every boundary's nodes as given, 0 if automatic.
+    fn given_nodes(&self) -> impl Iterator<Item = (Place, usize)> {
         let links =
             self.bodies.iter().enumerate().flat_map(|(b, body)| {
                 body.links.iter().enumerate().map(move |(l, link)| (Place::Link(b, l), link.nodes))
             });
         let obstacles = self.obstacles.iter().enumerate().map(|(k, wall)| (Place::Obstacle(k), wall.nodes));
         let walls = obstacles.chain(self.tank.iter().map(|wall| (Place::Tank, wall.nodes)));
-        match links.chain(walls).max_by_key(|(_, nodes)| *nodes) {
+        links.chain(walls)
+    }
+
+    /// Whether some boundary's nodes are given.
+    pub fn gives_nodes(&self) -> bool {
+        self.given_nodes().any(|(_, nodes)| nodes > 0)
+    }
+
+    /// Which boundary has most nodes, of those that the scene gives.
+    pub fn largest(&self) -> String {
+        match self.given_nodes().max_by_key(|(_, nodes)| *nodes) {
             Some((place, nodes)) if nodes > 0 => format!("most nodes has {}: {nodes}", self.name_of(place)),
             _ => "give boundaries fewer nodes, or the scene fewer boundaries".to_owned(),
         }

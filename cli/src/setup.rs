@@ -103,8 +103,12 @@ impl Setup {
     pub fn unresolved(&self, bound: f64) -> Option<String> {
         let asked = self.model.view().plan().tolerance;
         (bound > asked).then(|| {
-            let what = "the error in space may be as large as";
-            format!("{what} {bound:.1e}, asked {asked:.1e}: give boundaries more nodes, or none, and they get what they need")
+            let help = if self.scene.gives_nodes() {
+                "give boundaries more nodes, or none, and they get what they need"
+            } else {
+                "give boundaries more nodes, or simpler outlines"
+            };
+            format!("the error in space may be as large as {bound:.1e}, asked {asked:.1e}: {help}")
         })
     }
 

@@ -99,7 +99,7 @@ impl<'s, S> Resolved<'s, S> {
             }
             // The bound, a hundred times what is seen, falls exponentially with the nodes: much fewer than so many would not do.
             let digits = |bound: R| Real::ln((bound.to_f64() * 1e-2).clamp(f64::MIN_POSITIVE, 0.1));
-            likely = 0.9 * factor * digits(asked) / digits(error);
+            likely = (0.9 * factor * digits(asked) / digits(error)).min(4.0);
         }
         Ok(best)
     }
