@@ -265,6 +265,33 @@ fn discs<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>, store: &[R]) -> Option<[
     radius(a).zip(radius(b)).map(|(a, b)| [a, b])
 }
 
+/// A lower bound of the distance of two ellipses outside each other, on their way through a unit of time, from their extents along a
+/// direction, which change by no more than a − b for each radian; of anything else −∞.
+pub(crate) fn between_ellipses<R: Real>(
+    [a, b]: [&Placed<'_, R>; 2],
+    motions: [Motion<R>; 2],
+    store: &[R],
+    way: Complex<R>,
+) -> R {
+    let way = way / norm(way);
+    // Halfway, and by how much it may be less before and after.
+    let extent = |p: &Placed<'_, R>, m: &Motion<R>| match p.record.view(store).curve {
+        Curve::Ellipse(e) if p.record.sign < R::zero() => {
+            let n = p.pose.unturned(way) * cis(-m.turn * R::HALF);
+            Some((e.a * n.re).hypot(e.b * n.im) + (e.a - e.b).abs() * m.turn.abs() * R::HALF)
+        }
+        _ => None,
+    };
+    let [ma, mb] = &motions;
+    match extent(a, ma).zip(extent(b, mb)) {
+        Some((a_extent, b_extent)) => {
+            let (start, shift) = (dot(b.pose.origin - a.pose.origin, way), dot(mb.shift - ma.shift, way));
+            start.min(start + shift) - a_extent - b_extent
+        }
+        None => -R::MAX,
+    }
+}
+
 /// Whether two outlines come within `limit` of each other, at rest or on their way through a unit of time.
 pub(crate) fn meet<R: Real>(
     a: &Placed<'_, R>,

@@ -2,11 +2,11 @@
 //!
 //! Tested by `tests/bad_input`, `tests/driving`, `tests/extremes`.
 
-use crate::base::complex::cabs;
+use crate::base::complex::{cabs, complex};
 use crate::base::memory::{at, copy};
 use crate::base::scalar::Real;
 use crate::base::status::Place;
-use crate::fluid::clearance::{Motion, encloses, gap, meet, touching};
+use crate::fluid::clearance::{Motion, between_ellipses, encloses, gap, meet, touching};
 use crate::fluid::gap::{Placed, apart, closest_nodes};
 use crate::geometry::pose::Poses;
 use crate::model::Model;
@@ -51,17 +51,35 @@ pub(crate) fn smallest_gap<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -
     best
 }
 
-/// A lower bound of the gap from the nodes: the outlines are nowhere farther from them than half a spacing. O(N_i N_j).
-fn coarse_gap<R: Real>(a: &Placed<'_, R>, b: &Placed<'_, R>) -> R {
-    closest_nodes(a, b).0.sqrt() - R::HALF * (a.record.spacing + b.record.spacing)
+/// Whether two outlines clearly come no closer than `limit` on their way: the outlines are nowhere farther from their nodes than half a
+/// spacing, and move no farther than `travel`; or two ellipses do not reach each other along the line of their closest nodes.
+/// O(N_i N_j).
+fn clear<R: Real>(
+    a: &Placed<'_, R>,
+    b: &Placed<'_, R>,
+    motions: [Motion<R>; 2],
+    store: &[R],
+    [travel, limit]: [R; 2],
+) -> bool {
+    if apart(a, b) > travel + limit {
+        return true;
+    }
+    let (square, i, k) = closest_nodes(a, b);
+    let node = |p: &Placed<'_, R>, k: usize| p.pose.place(complex(at(p.nodes.x, k), at(p.nodes.y, k)));
+    square.sqrt() - R::HALF * (a.record.spacing + b.record.spacing) > travel + limit
+        || between_ellipses([a, b], motions, store, node(b, k) - node(a, i)) > limit
 }
 
 /// The first pair that touches or crosses, if any, and its gap.
 pub(crate) fn first_contact<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>) -> Option<(Place, Place, R)> {
     pairs(model, poses).find_map(|(i, j, a, b)| {
         let limit = touching(&a, &b);
-        let clear = apart(&a, &b) > limit || coarse_gap(&a, &b) > limit || !meet(&a, &b, None, model.store, limit);
-        if clear { None } else { Some((model.place(i), model.place(j), gap(&a, &b, model.store))) }
+        let rest = [Motion::default(); 2];
+        if clear(&a, &b, rest, model.store, [R::zero(), limit]) || !meet(&a, &b, None, model.store, limit) {
+            None
+        } else {
+            Some((model.place(i), model.place(j), gap(&a, &b, model.store)))
+        }
     })
 }
 
@@ -126,8 +144,8 @@ pub(crate) fn swept_contact<'a, R: Real>(
         let travel = |m: &Motion<R>, reach: R| cabs(m.shift) + m.turn.abs() * reach;
         let [ma, mb] = &motions;
         let length = travel(ma, a.record.reach) + travel(mb, b.record.reach);
-        let clear = apart(a, b) > length || coarse_gap(a, b) > length;
-        !clear && meet(a, b, Some(motions), model.store, touching(a, b))
+        let limit = touching(a, b);
+        !clear(a, b, motions, model.store, [length, limit]) && meet(a, b, Some(motions), model.store, limit)
     });
     met.map(|(i, j, _, _)| (model.place(i), model.place(j)))
 }

@@ -13,6 +13,7 @@
 //! Tested by `tests/isolated_flow`, `tests/gradients`.
 
 use crate::base::complex::{Complex, cabs, complex, dot};
+use crate::base::features;
 use crate::base::memory::{put, take};
 use crate::base::scalar::Real;
 use crate::base::status::{Result, Status};
@@ -61,7 +62,7 @@ pub(crate) fn tabulate<R: Real>(
         let angle = fourier_sum(angle, nodes.step * R::count(k)) * R::HALF;
         crate::base::memory::axpy(stream, -angle, column);
     }
-    if !source.table.is_empty() {
+    if features::NEAR && !source.table.is_empty() {
         let (turn, shift) = (complex(R::one(), R::zero()), Complex::default());
         each_preimage(source, &Targets { nodes, turn, shift, own: true }, &mut |k, p| {
             crate::base::memory::add(stream, k, log_term(&p, m)[0].re);
@@ -136,7 +137,7 @@ impl<R: Real> Sheet<'_, R> {
         let (mut value, mut slope) = (logs * R::HALF / count, -plain / count);
         let (mut first, mut second) = (first * nodes.step, second * nodes.step);
         let table = self.record.table(self.c.model.store);
-        if !table.is_empty() {
+        if features::NEAR && !table.is_empty() {
             for p in self.c.preimages(self.boundary, row) {
                 let [w, d] = pole::sums(&p, table, [self.angle, &[]]);
                 (first, second) = (first + w.re, second + d);

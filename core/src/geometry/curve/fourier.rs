@@ -43,11 +43,7 @@ impl<'a, R: Real> Fourier<'a, R> {
         let mut jet = [Complex::default(); 3];
         for branch in self.branches() {
             let powers = [z(branch.start), z(branch.stride), z(branch.stride * R::count(LANES))];
-            let sums = if branch.coefficients.len() < LONG {
-                Powers { branch, powers }.run()
-            } else {
-                Machine::here().run(Powers { branch, powers })
-            };
+            let sums = computed(branch, Powers { branch, powers });
             for (total, part) in jet.iter_mut().zip(sums) {
                 *total += part;
             }
@@ -71,11 +67,7 @@ impl<'a, R: Real> Fourier<'a, R> {
             let long = stride * R::count(LANES);
             let powers = [cis(t * start), cis(t * stride), cis(t * long)];
             let changes = [start, stride, long].map(|k| cexpm1(perp(u * k)));
-            sum += if branch.coefficients.len() < LONG {
-                Changes { branch, powers, changes }.run()
-            } else {
-                Machine::here().run(Changes { branch, powers, changes })
-            };
+            sum += computed(branch, Changes { branch, powers, changes });
         }
         sum
     }
@@ -83,6 +75,16 @@ impl<'a, R: Real> Fourier<'a, R> {
 
 /// Coefficients worth the machine's own vectors.
 const LONG: usize = 2 * LANES;
+
+/// Runs a task on the machine's vectors if that pays. Where there are none it is a loop of calls: small, and the same digits.
+#[inline(never)]
+fn computed<R: Real, T: Task>(branch: Branch<'_, R>, task: T) -> T::Output {
+    if cfg!(target_arch = "x86_64") && branch.coefficients.len() < LONG {
+        task.run()
+    } else {
+        Machine::here().run(task)
+    }
+}
 
 /// Modes from `start` on, in steps of `stride`.
 #[derive(Clone, Copy)]
@@ -128,23 +130,27 @@ fn by<R: Real>(a: Vector<R>, b: Vector<R>, f: impl Fn(R, R) -> R) -> Vector<R> {
     out
 }
 
-#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn plus<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
     by(a, b, |a, b| a + b)
 }
 
-#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn times<R: Real>(a: Vector<R>, b: Vector<R>) -> Vector<R> {
     by(a, b, |a, b| a * b)
 }
 
 /// Product of complex numbers.
-#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn product<R: Real>([a, b]: [Vector<R>; 2], [x, y]: [Vector<R>; 2]) -> [Vector<R>; 2] {
     [by(times(a, x), times(b, y), |p, q| p - q), plus(times(a, y), times(b, x))]
 }
 
-#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn all<R: Real>(z: Complex<R>) -> [Vector<R>; 2] {
     [[z.re; LANES], [z.im; LANES]]
 }
@@ -156,7 +162,8 @@ fn first_of<R: Real>([re, im]: [Vector<R>; 2]) -> Complex<R> {
 }
 
 /// Lane by lane, the first value and what comes of it again and again.
-#[inline(always)]
+#[cfg_attr(target_arch = "x86_64", inline(always))]
+#[cfg_attr(not(target_arch = "x86_64"), inline(never))]
 fn spread<R: Real>(first: Complex<R>, next: impl Fn(Complex<R>) -> Complex<R>) -> [[R; LANES]; 2] {
     let (mut re, mut im, mut z) = ([R::zero(); LANES], [R::zero(); LANES], first);
     for (x, y) in re.iter_mut().zip(im.iter_mut()) {
