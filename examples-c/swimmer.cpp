@@ -17,6 +17,7 @@ int main()
     nekton::Link links[3];
     for (nekton::Link &link : links) {
         link = nekton::Link::ellipse(1.0, 0.1); // of density 1, like the fluid
+        link.nodes = 64; // without it as many as an error of 1e-6 takes
     }
     links[1].hinge(0, {-1.2, 0.0}, {1.2, 0.0}).moved_by(front);
     links[2].hinge(0, {1.2, 0.0}, {-1.2, 0.0}).moved_by(rear);
