@@ -141,9 +141,9 @@ pub use fluid::contact::Gap;
 pub use model::boundary::BoundaryRecord;
 pub use model::plan::{Formulation, Plan};
 pub use model::{CoordinateRecord, JointInfo, LinkInfo, LinkRecord, Model, ModelHead};
-#[cfg(feature = "alloc")]
-pub use setup::automatic_nodes::Resolved;
 pub use setup::automatic_nodes::{DEFAULT_TOLERANCE, NOTICED_BOUND};
+#[cfg(feature = "alloc")]
+pub use setup::automatic_nodes::{MOST_CHECKED, Resolved};
 pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};

@@ -63,7 +63,7 @@ impl<R: Real> ModelBuf<R> {
 impl<'s, S> Resolved<'s, S> {
     /// Compares the bound of the error at the start of a scene with its tolerance: automatic node counts that do not meet it are raised
     /// up to four times, as long as that helps, and those kept that come nearest. Costs a model and an evaluation for each attempt, and
-    /// nothing if no count is automatic. No attempt has more than [`MOST_CHECKED`] nodes in all: beyond, the rule stands unchecked, and what
+    /// nothing if no count is automatic. No attempt has more than [`MOST_CHECKED`](crate::MOST_CHECKED) nodes in all: beyond, the rule stands unchecked, and what
     /// a simulation tells of its bound.
     ///
     /// # Errors
