@@ -329,7 +329,11 @@ impl SceneFile {
             _ => None,
         };
         let go_on = "`allow_unresolved = true` in [run] goes on all the same";
-        match given.map(std::mem::take) {
+        let own = given.map(std::mem::take);
+        // The others as well: a neighbour may be what is not resolved.
+        scene.bodies.iter_mut().flat_map(|b| &mut b.links).for_each(|l| l.nodes = 0);
+        scene.obstacles.iter_mut().chain(&mut scene.tank).for_each(|w| w.nodes = 0);
+        match own {
             None => format!("give it more nodes; {go_on}"),
             Some(0) => format!(
                 "its outline takes more nodes than are chosen automatically: give it more, or a simpler outline; {go_on}"
