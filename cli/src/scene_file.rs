@@ -295,12 +295,12 @@ impl SceneFile {
 }
 
 impl SceneFile {
-    /// Every boundary's nodes as given, 0 if automatic.
+    /// Every boundary, as the core places it, with its nodes as given; 0 if automatic.
     fn given_nodes(&self) -> impl Iterator<Item = (Place, usize)> {
-        let links =
-            self.bodies.iter().enumerate().flat_map(|(b, body)| {
-                body.links.iter().enumerate().map(move |(l, link)| (Place::Link(b, l), link.nodes))
-            });
+        let links = self.bodies.iter().enumerate().flat_map(|(b, body)| {
+            let own = body.order.iter().filter_map(|user| body.links.get(*user));
+            own.enumerate().map(move |(l, link)| (Place::Link(b, l), link.nodes))
+        });
         let obstacles = self.obstacles.iter().enumerate().map(|(k, wall)| (Place::Obstacle(k), wall.nodes));
         let walls = obstacles.chain(self.tank.iter().map(|wall| (Place::Tank, wall.nodes)));
         links.chain(walls)
@@ -319,29 +319,21 @@ impl SceneFile {
         }
     }
 
-    /// What helps where the nodes of a place do not: those that would be taken if the scene gave none.
+    /// What helps where the nodes of a place do not: those that it would get if the scene gave none at all, since a neighbour's may be
+    /// what is missing.
     fn more_nodes(&self, place: Place) -> String {
-        let mut scene = self.clone();
-        let given = match place {
-            Place::Link(b, l) => scene.bodies.get_mut(b).and_then(|b| b.links.get_mut(l)).map(|l| &mut l.nodes),
-            Place::Tank => scene.tank.as_mut().map(|w| &mut w.nodes),
-            Place::Obstacle(k) => scene.obstacles.get_mut(k).map(|w| &mut w.nodes),
-            _ => None,
-        };
         let go_on = "`allow_unresolved = true` in [run] goes on all the same";
-        let own = given.map(std::mem::take);
-        // The others as well: a neighbour may be what is not resolved.
+        if !self.gives_nodes() {
+            return format!(
+                "it takes more nodes than are chosen automatically: give it more, or a simpler outline; {go_on}"
+            );
+        }
+        let mut scene = self.clone();
         scene.bodies.iter_mut().flat_map(|b| &mut b.links).for_each(|l| l.nodes = 0);
         scene.obstacles.iter_mut().chain(&mut scene.tank).for_each(|w| w.nodes = 0);
-        match own {
-            None => format!("give it more nodes; {go_on}"),
-            Some(0) => format!(
-                "its outline takes more nodes than are chosen automatically: give it more, or a simpler outline; {go_on}"
-            ),
-            Some(_) => match scene.with_core(|core| ModelBuf::new(core)).ok().and_then(|m| m.view().nodes(place)) {
-                Some(nodes) => format!("without `nodes` it gets {nodes}, which suffice at the start; {go_on}"),
-                None => format!("leave `nodes` out, and it gets as many as it needs; {go_on}"),
-            },
+        match scene.with_core(|core| ModelBuf::new(core)).ok().and_then(|m| m.view().nodes(place)) {
+            Some(nodes) => format!("without any `nodes` in the scene it gets {nodes}; {go_on}"),
+            None => format!("leave `nodes` out, and it gets as many as it needs; {go_on}"),
         }
     }
 }

@@ -481,13 +481,41 @@ fn a_bound_above_a_thousandth_is_noticed_everywhere_and_above_one_refused_with_w
         assert!(told.contains("more nodes are needed (bound = "), "{command:?} {told}");
     }
     assert!(
-        few.nekton(&["evaluate", "scene.toml"]).err.contains("without `nodes` it gets "),
+        few.nekton(&["evaluate", "scene.toml"]).err.contains("without any `nodes` in the scene it gets "),
         "{}",
         few.nekton(&["evaluate", "scene.toml"]).err
     );
     let allowed = Place::new(&bare("nodes = 20", "allow_unresolved = true"));
     assert_eq!(allowed.run().code, Some(0));
     assert!(say(&allowed, &["evaluate", "scene.toml"]).contains("notice: the error in space"));
+}
+
+#[test]
+fn memory_that_no_machine_has_is_refused_before_it_is_taken_with_the_largest_boundary() {
+    // Children come before their parent, whom the core places first.
+    let link = |name: &str, k: usize, nodes: usize| {
+        let a = 0.4 + 0.01 * k as f64;
+        format!(
+            "[[body.link]]\nname = \"{name}\"\nshape = {{ ellipse = [{a}, 0.1] }}\ndensity = 1.0\nnodes = {nodes}\n"
+        )
+    };
+    let hinge = |k: usize| {
+        format!("parent = \"hub\"\nhinge = {{ parent = [{}.0, 0.0] }}\nmotion = {{ locked = 0 }}\n", 2 * k + 2)
+    };
+    let children = (0..16).map(|k| link(&format!("c{k}"), k, if k == 3 { 65536 } else { 60000 }) + &hinge(k));
+    let scene = format!(
+        "[fluid]\ndensity = 1.0\n[[body]]\nname = \"fan\"\n{}{}",
+        children.collect::<String>(),
+        link("hub", 20, 32)
+    );
+    let done = Place::new(&scene).nekton(&["evaluate", "scene.toml"]);
+    assert_eq!(done.code, Some(2), "{}", done.out);
+    assert_eq!(done.err.lines().count(), 1, "{}", done.err);
+    assert!(
+        done.err.contains(" bytes of memory, and ") && done.err.contains("most nodes has link `fan.c3`: 65536"),
+        "{}",
+        done.err
+    );
 }
 
 #[test]
