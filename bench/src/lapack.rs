@@ -20,12 +20,27 @@ pub struct Lapack {
     single: Getrf<f32>,
     /// Version and chosen processor, as the library says.
     pub name: String,
+    core: String,
     _library: Library,
 }
 
 impl Lapack {
     /// Loads OpenBLAS; the error says what to install.
     pub fn load() -> Result<Self, String> {
+        let first = Self::open()?;
+        let Some(better) = modern(&first.core) else { return Ok(first) };
+        // It reads the variable once, when it is loaded.
+        drop(first);
+        // SAFETY: nothing else runs yet.
+        unsafe { std::env::set_var("OPENBLAS_CORETYPE", better) };
+        let second = Self::open()?;
+        match modern(&second.core) {
+            None => Ok(second),
+            Some(_) => Err(format!("OpenBLAS takes its kernels for {}; set OPENBLAS_CORETYPE={better}", second.core)),
+        }
+    }
+
+    fn open() -> Result<Self, String> {
         // SAFETY: OpenBLAS's initialization asks the processor and allocates; the types are those of LAPACK's
         // Fortran interface with 32-bit integers and of OpenBLAS's own functions.
         unsafe {
@@ -47,8 +62,9 @@ impl Lapack {
             let text = |pointer| std::ffi::CStr::from_ptr(pointer).to_string_lossy().into_owned();
             let config = text(config());
             let version: Vec<&str> = config.split_whitespace().take(2).collect();
-            let name = format!("{} ({})", version.join(" "), text(core()));
-            Ok(Self { double, single, name, _library: library })
+            let core = text(core());
+            let name = format!("{} ({core})", version.join(" "));
+            Ok(Self { double, single, name, core, _library: library })
         }
     }
 
@@ -61,6 +77,21 @@ impl Lapack {
     pub fn sgetrf(&self, a: &mut [f32], ld: usize, n: usize, pivots: &mut [i32]) {
         run(self.single, a, ld, n, pivots);
     }
+}
+
+/// The kernels that OpenBLAS should have taken on this processor, where it does not know it and took old ones.
+fn modern(core: &str) -> Option<&'static str> {
+    #[cfg(target_arch = "x86_64")]
+    if ["Prescott", "Core2", "Nehalem", "Generic"].iter().any(|old| old.eq_ignore_ascii_case(core)) {
+        if std::is_x86_feature_detected!("avx512f") && std::is_x86_feature_detected!("avx512bw") {
+            return Some("SkylakeX");
+        }
+        if std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma") {
+            return Some("Haswell");
+        }
+    }
+    let _ = core;
+    None
 }
 
 fn run<T>(getrf: Getrf<T>, a: &mut [T], ld: usize, n: usize, pivots: &mut [i32]) {

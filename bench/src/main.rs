@@ -19,6 +19,7 @@ fn main() -> ExitCode {
         ["table"] => with_lapack(table),
         // Lines of the table alone; of a program built with the feature `faer`.
         ["faer"] => with_lapack(|lapack| {
+            println!("# {}", lapack.name);
             lines(lapack, &nekton_bench::faer::rows());
             ExitCode::SUCCESS
         }),

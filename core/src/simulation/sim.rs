@@ -260,7 +260,7 @@ impl<'a, R: Real> Sim<'a, R> {
     /// Who factorizes the boundary system from now on, for scenes of many bodies; at first, and after [`Sim::init`],
     /// [`Factorization::Own`]. The results differ by rounding. What faer takes: the rows and columns that are factorized anew with every
     /// evaluation (all but the fixed walls'), from 512 on; assembly, right-hand sides and all solves stay on the caller's thread
-    /// (docs/design.md, section Several threads, says what is gained). With faer an evaluation allocates and may panic, and it may fail
+    /// (docs/design.md, section Several threads: on two threads it pays from about 2000 unknowns on). With faer an evaluation allocates and may panic, and it may fail
     /// with `OutOfMemory`. The C interface and the command do not offer it.
     ///
     /// # Errors
