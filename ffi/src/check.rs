@@ -97,7 +97,7 @@ fn check_shape<R: Real>(shape: Shape<'_, R>) -> Outcome {
             finite("corner_radius", radius.unwrap_or(R::zero()))?;
             all_finite("points", vertices.iter().copied())
         }
-        Shape::Curve { points } => all_finite("points", points.iter().copied()),
+        Shape::Curve { points, .. } => all_finite("points", points.iter().copied()),
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::diag::{Fault, Outcome};
 use crate::types::*;
 use nekton::scene::{
-    Body, CirculationModel, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Repulsion, Root,
-    Scene, Shape, Signal, Wall, Window,
+    Body, CirculationModel, Corners, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Quadrature,
+    Repulsion, Root, Scene, Shape, Signal, Wall, Window,
 };
 use nekton::{Method, Real, Status};
 
@@ -46,7 +46,17 @@ pub(crate) fn check_pointer<T>(what: &'static str, pointer: *const T) -> Outcome
     Ok(())
 }
 
-pub(crate) unsafe fn shape<'a, R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'a, R>> {
+unsafe fn corners<'a>(kind: i32, points: *const usize, count: usize) -> Outcome<Corners<'a>> {
+    Ok(match kind {
+        NEKTON_CORNERS_AUTO => Corners::Auto,
+        NEKTON_CORNERS_NONE => Corners::None,
+        // SAFETY: the caller's promise about the definition.
+        NEKTON_CORNERS_GIVEN => Corners::At(unsafe { array("corner_points", points, count) }?),
+        kind => return unknown("corners", kind),
+    })
+}
+
+unsafe fn shape<'a, R: Real>(s: &ShapeDef<R>, corners: Corners<'a>) -> Outcome<Shape<'a, R>> {
     let radius = if s.corner_radius == R::zero() { None } else { Some(s.corner_radius) };
     // SAFETY: the caller's promise about the definition.
     let points = || unsafe { array("points", s.points, s.point_count) };
@@ -55,7 +65,7 @@ pub(crate) unsafe fn shape<'a, R: Real>(s: &ShapeDef<R>) -> Outcome<Shape<'a, R>
         NEKTON_SHAPE_STAR => Shape::Star { radius: s.radius, amplitude: s.amplitude, lobes: s.lobes as usize },
         NEKTON_SHAPE_RECTANGLE => Shape::Rectangle { width: s.width, height: s.height, radius },
         NEKTON_SHAPE_POLYGON => Shape::Polygon { vertices: points()?, radius },
-        NEKTON_SHAPE_CURVE => Shape::Curve { points: points()? },
+        NEKTON_SHAPE_CURVE => Shape::Curve { points: points()?, corners },
         kind => return unknown("shape.kind", kind),
     })
 }
@@ -85,7 +95,7 @@ pub(crate) unsafe fn signal<'a, R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'a,
 pub(crate) unsafe fn wall<'a, R: Real>(w: &WallDef<R>) -> Outcome<Wall<'a, R>> {
     Ok(Wall {
         // SAFETY: the caller's promise about the definition.
-        shape: unsafe { shape(&w.shape) }?,
+        shape: unsafe { shape(&w.shape, corners(w.corners, w.corner_points, w.corner_count)?) }?,
         position: w.position,
         angle: w.angle,
         nodes: w.nodes,
@@ -99,9 +109,10 @@ pub(crate) unsafe fn link<'a, R: Real>(l: &LinkDef<R>) -> Outcome<Link<'a, R>> {
         NEKTON_MASS_GIVEN => Mass::Given { mass: l.mass, inertia: l.inertia, centre_of_mass: l.centre_of_mass },
         kind => return unknown("mass_kind", kind),
     };
-    // SAFETY (both): the caller's promise about the definition.
+    // SAFETY (all): the caller's promise about the definition.
     let joint = if l.parent == -1 { None } else { Some(unsafe { joint(l) }?) };
-    let shape = unsafe { shape(&l.shape) }?;
+    let corners = unsafe { corners(l.corners, l.corner_points, l.corner_count) }?;
+    let shape = unsafe { shape(&l.shape, corners) }?;
     Ok(Link { shape, mass, nodes: l.nodes, circulation: l.circulation, joint })
 }
 

@@ -68,16 +68,28 @@ impl<R: Real> Definition for SceneDef<R> {
 }
 
 impl<R: Real> Definition for WallDef<R> {
-    const SIZES: &'static [usize] = &[size_of::<Self>()];
+    /// At first without `corners` and what follows it.
+    const SIZES: &'static [usize] = &[core::mem::offset_of!(Self, corners), size_of::<Self>()];
     const ADVICE: &'static str = named::<R>("call nekton_wall_def_init", "call nekton32_wall_def_init");
     fn filled(struct_size: u32) -> Self {
         let zero = R::zero();
-        WallDef { struct_size, shape: no_shape(), position: [zero; 2], nodes: 0, angle: zero, circulation: zero }
+        WallDef {
+            struct_size,
+            shape: no_shape(),
+            position: [zero; 2],
+            nodes: 0,
+            angle: zero,
+            circulation: zero,
+            corners: NEKTON_CORNERS_AUTO,
+            corner_points: core::ptr::null(),
+            corner_count: 0,
+        }
     }
 }
 
 impl<R: Real> Definition for LinkDef<R> {
-    const SIZES: &'static [usize] = &[size_of::<Self>()];
+    /// At first without `corners` and what follows it.
+    const SIZES: &'static [usize] = &[core::mem::offset_of!(Self, corners), size_of::<Self>()];
     const ADVICE: &'static str = named::<R>("call nekton_link_def_init", "call nekton32_link_def_init");
     fn filled(struct_size: u32) -> Self {
         let zero = R::zero();
@@ -104,6 +116,9 @@ impl<R: Real> Definition for LinkDef<R> {
             stiffness: zero,
             damping: zero,
             start: [zero; 2],
+            corners: NEKTON_CORNERS_AUTO,
+            corner_points: core::ptr::null(),
+            corner_count: 0,
         }
     }
 }
@@ -161,8 +176,8 @@ macro_rules! closed {
 
 closed!(
     SceneDef.reserved: i32,
-    WallDef.circulation: R,
-    LinkDef.start: [R; 2],
+    WallDef.corner_count: usize,
+    LinkDef.corner_count: usize,
     BodyDef.link_count: usize,
     MethodDef.first_step: R,
 );

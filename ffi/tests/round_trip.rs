@@ -59,7 +59,7 @@ macro_rules! round_trip {
                         ),
                     )
                 },
-                plain(Shape::Curve { points: &knots }, joint(0, JointKind::Hinge, Drive::Locked(2.0))),
+                plain(Shape::curve(&knots), joint(0, JointKind::Hinge, Drive::Locked(2.0))),
             ];
             let given = Root::Prescribed([
                 Signal::Constant(0.0),

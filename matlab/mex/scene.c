@@ -59,9 +59,38 @@ static double *rows(const mxArray *a, size_t columns, size_t *count, const char 
     return r;
 }
 
-static void read_shape(const mxArray *a, nekton_shape *shape)
+/* Corners of a curve: 'auto', 'none', or numbers of points from 1. */
+typedef struct {
+    int32_t kind;
+    const size_t *points;
+    size_t count;
+} corner_list;
+
+static corner_list read_corners(const mxArray *a)
 {
-    static const char *const names[] = {"ellipse", "star", "rectangle", "polygon", "curve", "radius"};
+    corner_list c = {NEKTON_CORNERS_AUTO, NULL, 0};
+    static const char *const words[] = {"auto", "none"};
+    if (a && mxIsChar(a)) {
+        c.kind = word(a, words, 2, "corners") ? NEKTON_CORNERS_NONE : NEKTON_CORNERS_AUTO;
+    } else if (a) {
+        c.count = (size_t)mxGetNumberOfElements(a);
+        const double *x = numbers(a, c.count, "corners");
+        size_t *points = mxCalloc((mwSize)c.count, sizeof(size_t));
+        for (size_t i = 0; i < c.count; i++) {
+            if (!(x[i] >= 1 && x[i] <= 1e9) || x[i] != floor(x[i])) {
+                mexErrMsgIdAndTxt("nekton:arg:range", "corners: the number of a point must be a whole number from 1 on");
+            }
+            points[i] = (size_t)x[i] - 1;
+        }
+        c.kind = NEKTON_CORNERS_GIVEN;
+        c.points = points;
+    }
+    return c;
+}
+
+static corner_list read_shape(const mxArray *a, nekton_shape *shape)
+{
+    static const char *const names[] = {"ellipse", "star", "rectangle", "polygon", "curve", "radius", "corners"};
     known(a, names, COUNT(names), "shape");
     int given = 0;
     for (int k = 0; k < 5; k++) {
@@ -91,6 +120,7 @@ static void read_shape(const mxArray *a, nekton_shape *shape)
     }
     if (given != 1) mexErrMsgIdAndTxt("nekton:scene:shape", "a shape must be one of ellipse, star, rectangle, polygon, curve");
     optional(a, 0, "radius", &shape->corner_radius);
+    return read_corners(field(a, 0, "corners"));
 }
 
 static void read_wall(const mxArray *a, mwIndex i, nekton_wall_def *wall)
@@ -98,7 +128,10 @@ static void read_wall(const mxArray *a, mwIndex i, nekton_wall_def *wall)
     static const char *const names[] = {"shape", "position", "angle", "nodes", "circulation"};
     known(a, names, COUNT(names), "a wall");
     check(nekton_wall_def_init(wall), NULL, "scene");
-    read_shape(field(a, i, "shape"), &wall->shape);
+    corner_list corners = read_shape(field(a, i, "shape"), &wall->shape);
+    wall->corners = corners.kind;
+    wall->corner_points = corners.points;
+    wall->corner_count = corners.count;
     optionals(a, i, "position", wall->position, 2);
     optional(a, i, "angle", &wall->angle);
     optional(a, i, "circulation", &wall->circulation);
@@ -143,7 +176,10 @@ static void read_link(const mxArray *a, mwIndex i, nekton_link_def *link)
     static const char *const joints[] = {"hinge", "slider"}, *const drives[] = {"locked", "motion", "torque"};
     known(a, names, COUNT(names), "a link");
     check(nekton_link_def_init(link), NULL, "scene");
-    read_shape(field(a, i, "shape"), &link->shape);
+    corner_list corners = read_shape(field(a, i, "shape"), &link->shape);
+    link->corners = corners.kind;
+    link->corner_points = corners.points;
+    link->corner_count = corners.count;
     nodes(a, i, &link->nodes);
     optional(a, i, "circulation", &link->circulation);
     optional(a, i, "density", &link->density);

@@ -37,7 +37,7 @@ struct Looked {
 }
 
 fn look(points: &[[f64; 2]], nodes: usize) -> Result<Looked, nekton::Error> {
-    let links = [link(Shape::Curve { points }, 0.0, nodes)];
+    let links = [link(Shape::curve(points), 0.0, nodes)];
     let bodies = [body(&links, [0.0; 3], [0.0; 3])];
     let start = Instant::now();
     let model = ModelBuf::new(&Scene { bodies: &bodies, allow_unresolved: nodes > 0, ..Scene::new(1.0, 0.0) })?;

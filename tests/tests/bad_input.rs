@@ -161,7 +161,7 @@ fn measures_of_shapes() {
         Shape::Star { radius: nan, amplitude: 0.1, lobes: 3 },
         Shape::Rectangle { width: 1.0, height: nan, radius: None },
         Shape::Polygon { vertices: &[[0.0, 0.0], [1.0, 0.0], [nan, 1.0]], radius: None },
-        Shape::Curve { points: &[[0.0, 0.0], [1.0, 0.0], [1.0, nan], [0.0, 1.0]] },
+        Shape::curve(&[[0.0, 0.0], [1.0, 0.0], [1.0, nan], [0.0, 1.0]]),
     ] {
         refused_shape(shape, Status::NotFinite);
     }
@@ -173,7 +173,7 @@ fn measures_of_shapes() {
         Shape::Rectangle { width: 1.0, height: 1.0, radius: Some(2.0) },
         Shape::Polygon { vertices: &[[0.0, 0.0], [1.0, 0.0]], radius: None },
         Shape::Polygon { vertices: &[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], radius: None },
-        Shape::Curve { points: &[[0.0, 0.0], [1.0, 0.0]] },
+        Shape::curve(&[[0.0, 0.0], [1.0, 0.0]]),
     ] {
         let links = [Link { shape, ..LINK }];
         let error = refusal(&Scene { bodies: &bodies(&links), ..FLUID });
@@ -188,7 +188,7 @@ fn outlines_that_cross_themselves() {
     let bow_tie = [[0.0, 0.0], [1.0, 0.1], [0.0, 1.0], [1.2, 1.0]];
     refused_shape(Shape::Polygon { vertices: &bow_tie, radius: Some(0.01) }, Status::SelfIntersection);
     let eight = [[1.0, 0.6], [0.0, 0.0], [-1.0, -0.6], [-1.4, 0.1], [-1.0, 0.6], [0.1, 0.0], [1.0, -0.7], [1.4, 0.0]];
-    refused_shape(Shape::Curve { points: &eight }, Status::SelfIntersection);
+    refused_shape(Shape::curve(&eight), Status::SelfIntersection);
 }
 
 #[test]
@@ -424,7 +424,7 @@ fn what_is_inside_another_boundary_is_refused_and_what_is_beside_it_is_not() {
 #[test]
 fn of_points_equally_far_too_far_the_first_is_named() {
     let far = [[0.0, 0.0], [1e200, 0.0], [0.0, 1e200]];
-    for shape in [Shape::Polygon { vertices: &far, radius: None }, Shape::Curve { points: &far }] {
+    for shape in [Shape::Polygon { vertices: &far, radius: None }, Shape::curve(&far)] {
         let links = [Link { shape, ..LINK }];
         let bodies = [body(&links, [0.0; 3], [0.0; 3])];
         let error = refusal(&Scene { bodies: &bodies, ..FLUID });

@@ -11,7 +11,7 @@ fn links(nodes: usize) -> [[Link<'static, f64>; 1]; 3] {
     [
         circulating(Shape::Ellipse { a: 0.8, b: 0.4 }, 0.7, 0.8),
         circulating(Shape::Star { radius: 0.5, amplitude: 0.15, lobes: 3 }, 1.4, -0.5),
-        circulating(Shape::Curve { points: &POINTS }, 1.1, 0.3),
+        circulating(Shape::curve(&POINTS), 1.1, 0.3),
     ]
 }
 

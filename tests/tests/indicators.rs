@@ -218,7 +218,7 @@ fn automatic_nodes_meet_the_tolerance() {
         Shape::Ellipse { a: 1.0, b: 0.6 },
         Shape::Star { radius: 0.6, amplitude: 0.2, lobes: 3 },
         Shape::Rectangle { width: 1.2, height: 0.8, radius: Some(0.1) },
-        Shape::Curve { points: &fish },
+        Shape::curve(&fish),
     ];
     for quadrature in [Quadrature::Plain, Quadrature::Graded] {
         for (k, shape) in shapes.into_iter().enumerate() {

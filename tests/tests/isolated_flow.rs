@@ -61,7 +61,7 @@ fn gradient_of_circulation_is_the_derivative_of_its_energy_around_any_shape() {
         ("rectangle", Shape::Rectangle { width: 2.0, height: 0.2, radius: Some(0.02) }, 128),
         ("thin rectangle", THIN, 128),
         ("polygon", Shape::Polygon { vertices: &CORNER, radius: Some(0.05) }, 128),
-        ("section", Shape::Curve { points: &section }, 256),
+        ("section", Shape::curve(&section), 256),
     ];
     for (name, shape, nodes) in shapes {
         // Nodes that stay: exact at any resolution.
@@ -113,7 +113,7 @@ fn outlines_through_points_of_ellipses_have_the_flow_of_the_ellipses() {
                 [vec![energy], gradient(scene), gyroscopic]
             })
         };
-        let (curve, ellipse) = (of(Shape::Curve { points: &points }), of(Shape::Ellipse { a, b }));
+        let (curve, ellipse) = (of(Shape::curve(&points)), of(Shape::Ellipse { a, b }));
         let errors: Vec<f64> = curve.iter().zip(&ellipse).map(|(x, y)| difference(x, y)).collect();
         println!("{a} × {b}: {errors:?}");
         assert!(errors.iter().all(|e| *e <= tolerance), "{errors:?}");

@@ -41,7 +41,7 @@ fn buoyancy_acts_at_the_centroid_and_weight_at_the_centre_of_mass() {
     let gravity = 9.81;
     let bean =
         [[0.6, 0.0], [0.5, 0.4], [0.1, 0.35], [-0.3, 0.5], [-0.6, 0.2], [-0.5, -0.3], [0.0, -0.5], [0.45, -0.35]];
-    let links = [offset(Shape::Ellipse { a: 0.8, b: 0.4 }, 16, 0.0), offset(Shape::Curve { points: &bean }, 32, 0.0)];
+    let links = [offset(Shape::Ellipse { a: 0.8, b: 0.4 }, 16, 0.0), offset(Shape::curve(&bean), 32, 0.0)];
     let bodies = [body(&links[0], POSE, VELOCITY), body(&links[1], [2.5, 0.4, -1.9], [0.0; 3])];
     for bodies in [&bodies[..1], &bodies] {
         let scene = Scene { bodies, ..Scene::new(FLUID, gravity) };
@@ -170,7 +170,7 @@ fn a_lone_circulating_body_without_symmetry_moves_as_on_the_general_path() {
     let bean =
         [[0.6, 0.0], [0.5, 0.4], [0.1, 0.35], [-0.3, 0.5], [-0.6, 0.2], [-0.5, -0.3], [0.0, -0.5], [0.45, -0.35]];
     let star = Shape::Star { radius: 0.6, amplitude: 0.15, lobes: 3 };
-    for shape in [disc(RADIUS), Shape::Ellipse { a: 0.7, b: 0.4 }, star, Shape::Curve { points: &bean }] {
+    for shape in [disc(RADIUS), Shape::Ellipse { a: 0.7, b: 0.4 }, star, Shape::curve(&bean)] {
         let links = offset(shape, 96, GAMMA);
         let bodies = [body(&links, POSE, VELOCITY)];
         let [short, general] = [true, false].map(|shortcuts| {

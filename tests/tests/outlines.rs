@@ -71,7 +71,7 @@ fn a_curve_drawn_far_from_the_origin_is_the_same_curve() {
     };
     let mass = |far: f64| {
         let points = ring(far);
-        let links = [link(Shape::Curve { points: &points }, 1.0, 96)];
+        let links = [link(Shape::curve(&points), 1.0, 96)];
         let bodies = [body(&links, [0.0; 3], [0.0; 3])];
         matrix(&mut at_start(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).view(), |sim, out| {
             sim.mass_matrix(out)
@@ -93,7 +93,7 @@ fn points_coincide_or_not_in_every_unit_of_length_alike() {
         points
     };
     let model = |points: &[[f64; 2]]| {
-        let links = [link(Shape::Curve { points }, 1.0, 32)];
+        let links = [link(Shape::curve(points), 1.0, 32)];
         let bodies = [body(&links, [0.0; 3], [0.0; 3])];
         ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) })
     };

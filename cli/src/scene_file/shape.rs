@@ -1,6 +1,6 @@
 //! Shapes as written in a scene file.
 
-use nekton::scene::Shape;
+use nekton::scene::{Corners, Shape};
 
 use super::outline::Outline;
 use super::outline::naca::{Naca, POINTS, Tail};
@@ -18,15 +18,51 @@ pub enum ShapeDef {
     /// `polygon = [[x, y], …], radius = r`
     Polygon(Vec<[f64; 2]>, Option<f64>),
     /// `curve = [[x, y], …]` or a file, or `naca = "2412"`
-    Curve(Outline),
+    Curve(Outline, CornersDef),
+}
+
+/// Which points of a curve are corners, as written.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CornersDef {
+    /// `corners = "auto"`, as without it: as found, or none.
+    Word(Corners<'static>),
+    /// `corners = [i, …]`
+    At(Vec<usize>),
+}
+
+impl CornersDef {
+    fn read(item: &Item<'_>, points: usize) -> Outcome<Self> {
+        if item.is_text() {
+            let none = item.word(&["auto", "none"])? == "none";
+            return Ok(CornersDef::Word(if none { Corners::None } else { Corners::Auto }));
+        }
+        let one = |k: &Item<'_>| match k.count()? {
+            n if n < points => Ok(n),
+            n => {
+                Err(k.problem(format!("is the number of a corner, but there are {points} points, counted from 0: {n}")))
+            }
+        };
+        item.list()?.iter().map(one).collect::<Outcome<_>>().map(CornersDef::At)
+    }
 }
 
 impl ShapeDef {
     /// Reads `shape = { … }`.
     pub fn read(item: &Item<'_>) -> Outcome<Self> {
         const KINDS: &[&str] = &["ellipse", "star", "rectangle", "polygon", "curve", "naca"];
-        const KEYS: &[&str] =
-            &["ellipse", "star", "rectangle", "polygon", "curve", "naca", "radius", "chord", "points", "tail"];
+        const KEYS: &[&str] = &[
+            "ellipse",
+            "star",
+            "rectangle",
+            "polygon",
+            "curve",
+            "naca",
+            "radius",
+            "chord",
+            "points",
+            "tail",
+            "corners",
+        ];
         let section = item.section("`shape`", KEYS)?;
         let (kind, value) = section.one_of(KINDS)?;
         let cornered = matches!(kind, "rectangle" | "polygon");
@@ -39,6 +75,14 @@ impl ShapeDef {
         if let Some(other) = stranger {
             return Err(other.problem("is for `naca` only"));
         }
+        let corners = match section.get("corners") {
+            Some(c) if !matches!(kind, "curve" | "naca") => return Err(c.problem("is for `curve` and `naca` only")),
+            other => other,
+        };
+        let curve = |outline: Outline| {
+            let corners = corners.as_ref().map(|c| CornersDef::read(c, outline.points.len())).transpose()?;
+            Ok(ShapeDef::Curve(outline, corners.unwrap_or(CornersDef::Word(Corners::Auto))))
+        };
         let measures = || {
             let pair = value.pair()?;
             match pair.iter().find(|x| **x <= 0.0) {
@@ -62,15 +106,15 @@ impl ShapeDef {
                 }
                 ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
             }
-            "naca" => ShapeDef::Curve(naca(&section, &value)?),
-            "curve" if value.is_text() => ShapeDef::Curve(Outline::open(&value)?),
+            "naca" => curve(naca(&section, &value)?)?,
+            "curve" if value.is_text() => curve(Outline::open(&value)?)?,
             _ => {
                 let points = value.points()?;
                 if points.len() < 3 {
                     return Err(value.problem(format!("needs at least 3 points, but has {}", points.len())));
                 }
                 match kind {
-                    "curve" => ShapeDef::Curve(Outline { points, told: None }),
+                    "curve" => curve(Outline { points, told: None })?,
                     _ => ShapeDef::Polygon(points, radius),
                 }
             }
@@ -88,14 +132,20 @@ impl ShapeDef {
                 Shape::Rectangle { width: *width, height: *height, radius: *radius }
             }
             ShapeDef::Polygon(vertices, radius) => Shape::Polygon { vertices, radius: *radius },
-            ShapeDef::Curve(outline) => Shape::Curve { points: &outline.points },
+            ShapeDef::Curve(outline, corners) => Shape::Curve {
+                points: &outline.points,
+                corners: match corners {
+                    CornersDef::Word(word) => *word,
+                    CornersDef::At(at) => Corners::At(at),
+                },
+            },
         }
     }
 
     /// Area of the polygon through the points of a curve.
     pub fn polygon_area(&self) -> Option<f64> {
         match self {
-            ShapeDef::Curve(outline) => Some(outline.polygon_area()),
+            ShapeDef::Curve(outline, _) => Some(outline.polygon_area()),
             _ => None,
         }
     }
@@ -103,7 +153,7 @@ impl ShapeDef {
     /// What the user is told of points that the scene file does not show.
     pub fn told(&self) -> Option<&str> {
         match self {
-            ShapeDef::Curve(outline) => outline.told.as_deref(),
+            ShapeDef::Curve(outline, _) => outline.told.as_deref(),
             _ => None,
         }
     }

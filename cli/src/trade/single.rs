@@ -1,7 +1,7 @@
 //! A scene in single precision.
 
 use nekton::scene::{
-    Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape, Signal, Wall, Window,
+    Body, Corners, Drive, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape, Signal, Wall, Window,
 };
 
 /// The same scene, every number rounded. What it refers to is kept until the process ends: a command converts one scene, once.
@@ -60,7 +60,14 @@ fn shape(s: &Shape<'_, f64>) -> Shape<'static, f32> {
         Shape::Polygon { vertices, radius } => {
             Shape::Polygon { vertices: points(vertices), radius: radius.map(|r| r as f32) }
         }
-        Shape::Curve { points: list } => Shape::Curve { points: points(list) },
+        Shape::Curve { points: list, corners } => Shape::Curve {
+            points: points(list),
+            corners: match corners {
+                Corners::At(at) => Corners::At(at.to_vec().leak()),
+                Corners::Auto => Corners::Auto,
+                Corners::None => Corners::None,
+            },
+        },
     }
 }
 

@@ -44,6 +44,7 @@ statuses! {
     DriveUnresolved = 4, "the step is too long for what a drive does within it";
     EnergyDrift = 5, "energy and the work of the drives do not balance";
     PointRepeated = 6, "the first point is repeated at the end and was dropped";
+    CornersFound = 7, "kinks of the points were taken as corners";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";

@@ -82,7 +82,7 @@ pub(crate) fn nodes<R: Real>(shape: &Shape<'_, R>, tolerance: R, quadrature: Qua
             let blunt = if vertices.len() < 4 { 1.6 } else { 1.0 };
             blunt * vertices.len() as f64 * corner(digits, radius.map_or(SHARP, |r| r.to_f64() / short))
         }
-        Shape::Curve { points } => distinct(points).len() as f64 * (1.0 + 0.2 * digits),
+        Shape::Curve { .. } => shape.ladder_counts().map_or(0.0, |(points, _)| points as f64 * (1.0 + 0.2 * digits)),
     };
     let count = own.max(neighbours).min(MOST as f64);
     // NaN, of a shape that is refused later, counts as 0.

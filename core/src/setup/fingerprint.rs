@@ -8,8 +8,8 @@
 use crate::base::digest::Digest;
 use crate::base::scalar::Real;
 use crate::scene::{
-    Body, CirculationModel, Description, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass, Quadrature,
-    Repulsion, Root, Scene, Shape, Signal, Wall, Window,
+    Body, CirculationModel, Corners, Description, Drive, ForceFormula, Harmonic, Joint, JointKind, Link, Mass,
+    Quadrature, Repulsion, Root, Scene, Shape, Signal, Wall, Window,
 };
 use crate::setup::items::items;
 
@@ -202,9 +202,18 @@ fn shape<R: Real>(d: &mut Digest, shape: &Shape<'_, R>) {
             points(d, vertices);
             optional(d, radius, |d, r| d.real(r));
         }
-        Shape::Curve { points: through } => {
+        Shape::Curve { points: through, corners } => {
             d.count(4);
             points(d, through);
+            match corners {
+                Corners::Auto => d.count(0),
+                Corners::None => d.count(1),
+                Corners::At(list) => {
+                    d.count(2);
+                    d.count(list.len());
+                    list.iter().for_each(|k| d.count(*k));
+                }
+            }
         }
     }
 }
@@ -291,7 +300,9 @@ mod tests {
         let rectangle = Shape::Rectangle { width: c.x(1.0), height: c.x(0.4), radius: c.pick(radius, None) };
         let radius = Some(c.x(0.1));
         let polygon = Shape::Polygon { vertices: c.pick(all, fewer), radius: c.pick(radius, None) };
-        let curve = Shape::Curve { points: c.pick(all, fewer) };
+        let given = c.pick(Corners::At(&[0, 2]), Corners::At(&[1]));
+        let corners = c.pick(given, Corners::Auto);
+        let curve = Shape::Curve { points: c.pick(all, fewer), corners };
         let curve = c.pick(curve, Shape::Polygon { vertices: all, radius: None });
         let density = Mass::Density(c.x(1.2));
         let given = Mass::Given { mass: c.x(1.2), inertia: c.x(0.3), centre_of_mass: c.xs([0.1, 0.2]) };

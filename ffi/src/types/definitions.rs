@@ -100,6 +100,13 @@ pub struct SignalDef<R> {
     pub row_count: usize,
 }
 
+/// Where the points of a curve show a kink: a turn of 30 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND).
+pub const NEKTON_CORNERS_AUTO: i32 = 0;
+/// Nowhere: the curve is smooth.
+pub const NEKTON_CORNERS_NONE: i32 = 1;
+/// At corner_points.
+pub const NEKTON_CORNERS_GIVEN: i32 = 2;
+
 /// A fixed boundary: the tank or an obstacle. To be filled by nekton_wall_def_init first.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -116,6 +123,12 @@ pub struct WallDef<R> {
     pub angle: R,
     /// Circulation around an obstacle, m^2/s; must be 0 for the tank.
     pub circulation: R,
+    /// Curve: which of its points are corners; NEKTON_CORNERS_...
+    pub corners: i32,
+    /// Given corners: numbers of the points, from 0.
+    pub corner_points: *const usize,
+    /// Number of given corners.
+    pub corner_count: usize,
 }
 
 /// Homogeneous, of the link's density.
@@ -183,6 +196,12 @@ pub struct LinkDef<R> {
     pub damping: R,
     /// Torque: u and du/dt at the start.
     pub start: [R; 2],
+    /// Curve: which of its points are corners; NEKTON_CORNERS_...
+    pub corners: i32,
+    /// Given corners: numbers of the points, from 0.
+    pub corner_points: *const usize,
+    /// Number of given corners.
+    pub corner_count: usize,
 }
 
 /// By the laws of motion.

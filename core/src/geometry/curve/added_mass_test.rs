@@ -107,7 +107,7 @@ fn added_mass_of_curve_through_points_converges_with_three_nodes_per_point() {
             [r * t.cos(), r * t.sin()]
         })
         .collect();
-    let outline = compile(Shape::Curve { points: &points });
+    let outline = compile(Shape::curve(&points));
     close(added_mass(&outline.view(), 72, X), added_mass(&outline.view(), 200, X), 2e-14);
 }
 
@@ -120,7 +120,7 @@ fn permanent_ladders_at_bends_pay() {
             [r * t.cos(), r * t.sin()]
         })
         .collect();
-    let outline = compile(Shape::Curve { points: &points });
+    let outline = compile(Shape::curve(&points));
     let view = outline.view();
     let plain = OutlineView { curve: view.curve, grading: Grading::uniform() };
     let exact = added_mass(&view, 400, X);

@@ -2,15 +2,16 @@
 //!
 //! Tested by `geometry/curve/tests.rs`, `tests/bad_input`.
 
+use super::corners::Kinked;
 use super::polygon::{self, CORNER};
-use super::polyline::{area, boxes_len, cross, crossing, point, straight};
+use super::polyline::{area, boxes_len, cross, crossing, distinct, point, straight};
 use super::{Curve, Ellipse, Kind, Outline, through_points};
 use crate::base::complex::{Complex, cabs, dot};
 use crate::base::memory::{part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::geometry::grading::{Ladder, TOP, grading_len, write_grading};
-use crate::scene::Shape;
+use crate::scene::{Corners, Shape};
 
 /// Most lobes of a star.
 pub const MAX_LOBES: usize = 1024;
@@ -82,24 +83,6 @@ fn turned<R: Real>(points: &[[R; 2]], clockwise: bool) -> impl Fn(usize) -> Comp
     move |k| point(points.as_flattened(), if clockwise && k > 0 { n.saturating_sub(k) } else { k })
 }
 
-/// Points without what repeats the first or the one before at the end, to a millionth of their mean distance. O(n) if the last does.
-pub(crate) fn distinct<R: Real>(points: &[[R; 2]]) -> &[[R; 2]] {
-    let mut rest = points;
-    while let (&[first, .., before, last], true) = (rest, rest.len() > 3) {
-        let distance = |a: [R; 2], b: [R; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
-        let nearest = distance(last, first).min(distance(last, before));
-        let way = || points.iter().zip(points.iter().skip(1)).fold(R::zero(), |s, (a, b)| s + distance(*a, *b));
-        if nearest > R::zero()
-            && (nearest > R::lit(1e-3) * distance(first, before)
-                || nearest > R::lit(1e-6) * way() / R::count(points.len()))
-        {
-            break;
-        }
-        rest = rest.get(..rest.len() - 1).unwrap_or(rest);
-    }
-    rest
-}
-
 fn rectangle<R: Real>(width: R, height: R) -> [[R; 2]; 4] {
     let (x, y) = (width * R::HALF, height * R::HALF);
     [[-x, -y], [x, -y], [x, y], [-x, y]]
@@ -157,15 +140,17 @@ impl<R: Real> Shape<'_, R> {
     fn closed(&self) -> Self {
         match *self {
             Shape::Polygon { vertices, radius } => Shape::Polygon { vertices: distinct(vertices), radius },
-            Shape::Curve { points } => Shape::Curve { points: distinct(points) },
             other => other,
         }
     }
 
-    fn given_points(&self) -> usize {
+    /// A point is repeated at the end.
+    fn repeats(&self) -> bool {
         match *self {
-            Shape::Polygon { vertices: points, .. } | Shape::Curve { points } => points.len(),
-            _ => 0,
+            Shape::Polygon { vertices: points, .. } | Shape::Curve { points, .. } => {
+                distinct(points).len() < points.len()
+            }
+            _ => false,
         }
     }
 
@@ -188,13 +173,17 @@ impl<R: Real> Shape<'_, R> {
             }
             Shape::Rectangle { width, height, radius } => polygon(&rectangle(width, height), radius),
             Shape::Polygon { vertices, radius } => polygon(vertices, radius),
-            Shape::Curve { points } => Ok(Sizes {
-                own: through_points::coefficients_len(points.len()),
-                rungs: points.len().saturating_mul(BEND_RUNGS),
-                ladders: points.len(),
-                tips: points.len().min(MOST_TIPS),
-                scratch: through_points::Memory::<R>::len(&points.len()).ok_or(Status::SizeOverflow)?,
-            }),
+            Shape::Curve { points, corners } => {
+                let n = Kinked::new(points, corners).count();
+                let memory = through_points::Memory::<R>::len(&n).ok_or(Status::SizeOverflow)?;
+                Ok(Sizes {
+                    own: through_points::coefficients_len(n),
+                    rungs: n.saturating_mul(BEND_RUNGS),
+                    ladders: n,
+                    tips: n.min(MOST_TIPS),
+                    scratch: memory.saturating_add(n.saturating_mul(2)),
+                })
+            }
         }
     }
 
@@ -223,7 +212,7 @@ impl<R: Real> Shape<'_, R> {
     /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
     /// of the shortest side; from 32 roundings of the perimeter up to where two arcs no longer fit on a side.
     /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`; a repeated last point is dropped,
-    /// with the notice `PointRepeated`.
+    /// with the notice `PointRepeated`; kinks of a curve's points become corners, with `CornersFound`.
     /// Errors name the measure, corner ("vertex") or point: `NotFinite`, `BadShape`, `OutOfRange`,
     /// `SelfIntersection`; `MemoryTooSmall`.
     ///
@@ -231,7 +220,7 @@ impl<R: Real> Shape<'_, R> {
     pub(crate) fn compile(&self, store: &mut [R], scratch: &mut [R]) -> Result<(Outline<R>, Status)> {
         let closed = self.closed();
         let (outline, status) = closed.compile_closed(store, scratch)?;
-        let repeated = closed.given_points() < self.given_points();
+        let repeated = self.repeats() && status != Status::CornersFound;
         Ok((outline, if repeated { Status::PointRepeated } else { status }))
     }
 
@@ -265,10 +254,20 @@ impl<R: Real> Shape<'_, R> {
                 let outline = grade_corners(n, perimeter, radius, store, scratch)?;
                 Ok((outline, if clockwise { Status::OutlineReversed } else { Status::Ok }))
             }
-            Shape::Curve { points } => {
-                let n = points.len();
-                let clockwise = area(turned(points, false), n) < R::zero();
-                let p = turned(points, clockwise);
+            Shape::Curve { points, corners } => {
+                let kinked = Kinked::new(points, corners);
+                let n = kinked.count();
+                let (rounded, scratch) =
+                    scratch.split_at_mut_checked(n.saturating_mul(2)).ok_or(Status::MemoryTooSmall)?;
+                let rounded = rounded.as_chunks_mut::<2>().0;
+                let mut places = rounded.iter_mut();
+                kinked.each(|_, p| {
+                    if let Some(place) = places.next() {
+                        *place = [p.re, p.im];
+                    }
+                });
+                let clockwise = area(turned(rounded, false), n) < R::zero();
+                let p = turned(rounded, clockwise);
                 let mut memory = through_points::Memory::take(&n, &mut { scratch })?;
                 let modes = through_points::write(&p, n, &mut memory, store)?;
                 let kind = Kind::Fourier { centre: R::one(), stride: R::one(), down: modes.down, count: modes.count };
@@ -277,7 +276,7 @@ impl<R: Real> Shape<'_, R> {
                 if let Some((_, j)) = crossing(memory.samples, memory.boxes, R::zero(), R::lit(TOUCH)) {
                     let at = through_points::point_before(memory.knots, n, j);
                     let own = if clockwise && at > 0 { n.saturating_sub(at) } else { at };
-                    return Err(Error::new(Status::SelfIntersection).of("point", own as f64));
+                    return Err(Error::new(Status::SelfIntersection).of("point", kinked.origin(own) as f64));
                 }
                 let enclosed = area(|i| point(memory.samples, i), samples);
                 let Curve::Fourier(curve) = kind.curve(store) else {
@@ -287,7 +286,13 @@ impl<R: Real> Shape<'_, R> {
                 if enclosed <= size * R::EPSILON * R::lit(64.0) || enclosed.is_nan() {
                     return Err(Error::new(Status::BadShape).of("area", enclosed.to_f64()));
                 }
-                Ok((outline, if clockwise { Status::OutlineReversed } else { Status::Ok }))
+                let found = corners == Corners::Auto && kinked.any();
+                let status = match (found, clockwise) {
+                    (true, _) => Status::CornersFound,
+                    (_, true) => Status::OutlineReversed,
+                    _ => Status::Ok,
+                };
+                Ok((outline, status))
             }
         }
     }
@@ -318,7 +323,9 @@ impl<R: Real> Shape<'_, R> {
                 radius_given(radius)?;
                 points_given("vertices", "vertex", vertices)
             }
-            Shape::Curve { points } => {
+            Shape::Curve { points, corners } => {
+                Kinked::new(points, corners).check()?;
+                let points = distinct(points);
                 points_given("points", "point", points)?;
                 let p = turned(points, false);
                 let n = points.len();

@@ -11,6 +11,7 @@
 
 #[cfg(test)]
 mod added_mass_test;
+mod corners;
 mod ellipse;
 mod fourier;
 mod from_shape;
@@ -22,8 +23,8 @@ mod through_points;
 
 pub use ellipse::Ellipse;
 pub use fourier::Fourier;
-pub(crate) use from_shape::distinct;
 pub use polygon::{Polygon, SHARP};
+pub(crate) use polyline::distinct;
 
 use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::memory::part;

@@ -29,6 +29,24 @@ pub(super) fn cross<R: Real>(a: Complex<R>, b: Complex<R>) -> R {
     dot(perp(a), b)
 }
 
+/// Points without what repeats the first or the one before at the end, to a millionth of their mean distance. O(n) if the last does.
+pub(crate) fn distinct<R: Real>(points: &[[R; 2]]) -> &[[R; 2]] {
+    let mut rest = points;
+    while let (&[first, .., before, last], true) = (rest, rest.len() > 3) {
+        let distance = |a: [R; 2], b: [R; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+        let nearest = distance(last, first).min(distance(last, before));
+        let way = || points.iter().zip(points.iter().skip(1)).fold(R::zero(), |s, (a, b)| s + distance(*a, *b));
+        if nearest > R::zero()
+            && (nearest > R::lit(1e-3) * distance(first, before)
+                || nearest > R::lit(1e-6) * way() / R::count(points.len()))
+        {
+            break;
+        }
+        rest = rest.get(..rest.len() - 1).unwrap_or(rest);
+    }
+    rest
+}
+
 /// Signed area of the polygon with these corners.
 pub(super) fn area<R: Real>(corner: impl Fn(usize) -> Complex<R>, n: usize) -> R {
     let origin = corner(0);

@@ -59,7 +59,7 @@ fn zoo(points: &[[f64; 2]]) -> Vec<Shape<'_, f64>> {
         Shape::Rectangle { width: 1.0, height: 1.0, radius: None },
         Shape::Polygon { vertices: &L_SHAPE, radius: Some(0.05) },
         Shape::Polygon { vertices: &WEDGE, radius: Some(1e-3) },
-        Shape::Curve { points },
+        Shape::curve(points),
     ]
 }
 
@@ -276,7 +276,7 @@ fn node_derivatives_match_differences_in_s() {
 fn curve_passes_through_its_points() {
     for n in [3, 4, 5, 8, 24, 60] {
         let points = blob(n);
-        let c = compile(Shape::Curve { points: &points });
+        let c = compile(Shape::curve(&points));
         let view = c.view();
         let mut worst: f64 = 0.0;
         for (k, p) in points.iter().enumerate() {
@@ -307,7 +307,7 @@ fn curve_through_points_of_an_ellipse_converges_to_it() {
                 [z.re, 0.5 * z.im]
             })
             .collect();
-        let c = compile(Shape::Curve { points: &points });
+        let c = compile(Shape::curve(&points));
         (0..997)
             .map(|i| {
                 let z = c.view().curve.jet_real(i as f64 * 0.0063)[0];
@@ -327,7 +327,7 @@ fn clockwise_outlines_are_turned_round() {
     let (l, b) = (backwards(&L_SHAPE), backwards(&points));
     for (shape, turned) in [
         (Shape::Polygon { vertices: &L_SHAPE, radius: Some(0.1) }, Shape::Polygon { vertices: &l, radius: Some(0.1) }),
-        (Shape::Curve { points: &points }, Shape::Curve { points: &b }),
+        (Shape::curve(&points), Shape::curve(&b)),
     ] {
         let (one, other) = (compile(shape), compile(turned));
         assert_eq!((one.status, other.status), (Status::Ok, Status::OutlineReversed));
@@ -354,7 +354,7 @@ fn crossing_and_touching_outlines_are_refused() {
         }
     }
     for points in [&bow[..], &lopsided, &twice] {
-        let e = refused(Shape::Curve { points });
+        let e = refused(Shape::curve(points));
         assert_eq!((e.status, e.what), (Status::SelfIntersection, "point"), "{points:?}");
         assert!((e.value as usize) < points.len());
     }
@@ -364,7 +364,7 @@ fn crossing_and_touching_outlines_are_refused() {
             [c, s * c]
         })
         .collect();
-    assert_eq!(refused(Shape::Curve { points: &eight }).status, Status::SelfIntersection);
+    assert_eq!(refused(Shape::curve(&eight)).status, Status::SelfIntersection);
 }
 
 #[test]
@@ -397,10 +397,10 @@ fn bad_measures_are_named() {
         (Shape::Polygon { vertices: &repeated, radius: r }, Status::BadShape, "vertex"),
         (Shape::Polygon { vertices: &square[..2], radius: r }, Status::BadShape, "vertices"),
         (Shape::Polygon { vertices: &[], radius: r }, Status::BadShape, "vertices"),
-        (Shape::Curve { points: &hole }, Status::NotFinite, "point"),
-        (Shape::Curve { points: &line }, Status::BadShape, "area"),
-        (Shape::Curve { points: &repeated }, Status::BadShape, "point"),
-        (Shape::Curve { points: &square[..2] }, Status::BadShape, "points"),
+        (Shape::curve(&hole), Status::NotFinite, "point"),
+        (Shape::curve(&line), Status::BadShape, "area"),
+        (Shape::curve(&repeated), Status::BadShape, "point"),
+        (Shape::curve(&square[..2]), Status::BadShape, "points"),
     ];
     for (shape, status, what) in cases {
         // The sizes may be asked for before anything has been checked.
@@ -433,7 +433,7 @@ fn single_precision_agrees_with_double() {
             Shape::Polygon { vertices: &L_SHAPE, radius: Some(0.05) },
             Shape::Polygon { vertices: &l, radius: Some(0.05) },
         ),
-        (Shape::Curve { points: &points }, Shape::Curve { points: &narrow }),
+        (Shape::curve(&points), Shape::curve(&narrow)),
     ];
     for (wide, narrow) in pairs {
         let (a, b) = (compile(wide), compile(narrow));
@@ -487,7 +487,7 @@ fn arbitrary_outlines_are_compiled_or_refused_for_a_reason() {
         let radius = 10f64.powf(-1.0 - 4.0 * random());
         accepted += usize::from(judge(Shape::Polygon { vertices: &vertices, radius: Some(radius) }));
         accepted += usize::from(judge(Shape::Polygon { vertices: &narrow, radius: Some(radius as f32) }));
-        accepted += usize::from(judge(Shape::Curve { points: &vertices }));
+        accepted += usize::from(judge(Shape::curve(&vertices)));
     }
     assert!(accepted > 60 && accepted < 150, "{accepted}");
 }
