@@ -1,7 +1,12 @@
-//! Outlines as people have them: aerofoil files of Selig's and Lednicer's kind, CSV of any sort, and sections by formula.
+//! Outlines as people have them: aerofoil files of Selig's and Lednicer's kind, CSV of any sort, paths of SVG pictures, and sections
+//! by formula.
 
 mod cells;
+mod drawing;
+#[cfg(test)]
+mod drawing_test;
 pub mod naca;
+mod path;
 #[cfg(test)]
 mod tests;
 
@@ -39,12 +44,17 @@ impl Outline {
         0.5 * twice_area(&self.points).abs()
     }
 
-    /// The file that an item names.
-    pub fn open(from: &Item<'_>) -> Outcome<Self> {
+    /// The file that an item names, and in a picture the path that another one names.
+    pub fn open(from: &Item<'_>, id: Option<&Item<'_>>) -> Outcome<Self> {
         let path = from.source.relative(from.text()?);
         let bytes = file::read(&path, file::OUTLINE)
             .map_err(|e| from.problem(format!("names {}, which cannot be read: {e}", path.display())))?;
-        let (points, kind) = read(&path, &bytes)?;
+        let text = cells::text(&path, &bytes)?;
+        let (points, kind) = match id {
+            _ if drawing::is_xml(&text) => drawing::read(&path, &text, id.map(Item::text).transpose()?)?,
+            Some(id) => return Err(id.problem("is for SVG pictures only")),
+            None => read(&path, &text)?,
+        };
         // By the name in the scene: where the scene is, is of no importance.
         Ok(Self::new(points, &format!("{}{kind}", from.text()?)))
     }
@@ -82,9 +92,8 @@ fn description(points: &[[f64; 2]]) -> String {
 }
 
 /// The points of a file, as they stand there, and in brackets what was understood beyond two columns of numbers.
-fn read(path: &Path, bytes: &[u8]) -> Outcome<(Vec<[f64; 2]>, String)> {
-    let text = cells::text(path, bytes)?;
-    let mut sheet = cells::sheet(path, &text)?;
+fn read(path: &Path, text: &str) -> Outcome<(Vec<[f64; 2]>, String)> {
+    let mut sheet = cells::sheet(path, text)?;
     let mut kind = Vec::new();
     let single = lone_number(path, &mut sheet)?;
     let (columns, header) = columns(path, &mut sheet)?;

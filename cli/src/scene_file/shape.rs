@@ -26,7 +26,7 @@ impl ShapeDef {
     pub fn read(item: &Item<'_>) -> Outcome<Self> {
         const KINDS: &[&str] = &["ellipse", "star", "rectangle", "polygon", "curve", "naca"];
         const KEYS: &[&str] =
-            &["ellipse", "star", "rectangle", "polygon", "curve", "naca", "radius", "chord", "points", "tail"];
+            &["ellipse", "star", "rectangle", "polygon", "curve", "naca", "radius", "chord", "points", "tail", "path"];
         let section = item.section("`shape`", KEYS)?;
         let (kind, value) = section.one_of(KINDS)?;
         let cornered = matches!(kind, "rectangle" | "polygon");
@@ -38,6 +38,10 @@ impl ShapeDef {
         let stranger = ["chord", "points", "tail"].iter().find_map(|k| section.get(k)).filter(|_| kind != "naca");
         if let Some(other) = stranger {
             return Err(other.problem("is for `naca` only"));
+        }
+        let drawn = section.get("path");
+        if let Some(p) = drawn.as_ref().filter(|_| kind != "curve" || !value.is_text()) {
+            return Err(p.problem("is for `curve` with an SVG picture only"));
         }
         let measures = || {
             let pair = value.pair()?;
@@ -63,7 +67,7 @@ impl ShapeDef {
                 ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
             }
             "naca" => ShapeDef::Curve(naca(&section, &value)?),
-            "curve" if value.is_text() => ShapeDef::Curve(Outline::open(&value)?),
+            "curve" if value.is_text() => ShapeDef::Curve(Outline::open(&value, drawn.as_ref())?),
             _ => {
                 let points = value.points()?;
                 if points.len() < 3 {
