@@ -10,7 +10,7 @@ use super::MOST;
 
 /// Pieces, at most.
 const PIECES: usize = 20_000;
-/// Steps turn by this angle at most: the curve through the points of a circle then has its area to 1e-9.
+/// Steps turn by this angle at most: the curve through the points of a circle then has its area to 5e-9.
 const TURN: f64 = PI / 45.0;
 /// Longest step: this part of the length of the path.
 const LONGEST: f64 = 1.0 / 128.0;
