@@ -54,6 +54,8 @@ enum {
     NEKTON_N_ENERGY_DRIFT = 5,
     /** the first point is repeated at the end and was dropped */
     NEKTON_N_POINT_REPEATED = 6,
+    /** kinks of the points were taken as corners */
+    NEKTON_N_CORNERS_FOUND = 7,
     /** the memory given is smaller than required */
     NEKTON_E_MEMORY_TOO_SMALL = -1,
     /** a value is not finite */
@@ -155,6 +157,15 @@ enum {
 
 /** Set while running by nekton_sim_set_channel; 0 until then. */
 #define NEKTON_SIGNAL_CHANNEL 3
+
+/** Where the points of a curve show a kink: a turn of 30 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND). */
+#define NEKTON_CORNERS_AUTO 0
+
+/** Nowhere: the curve is smooth. */
+#define NEKTON_CORNERS_NONE 1
+
+/** At corner_points. */
+#define NEKTON_CORNERS_GIVEN 2
 
 /** Homogeneous, of the link's density. */
 #define NEKTON_MASS_DENSITY 0
@@ -341,6 +352,12 @@ typedef struct nekton_wall_def {
     double angle;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     double circulation;
+    /** Curve: which of its points are corners; NEKTON_CORNERS_... */
+    int32_t corners;
+    /** Given corners: numbers of the points, from 0. */
+    const size_t *corner_points;
+    /** Number of given corners. */
+    size_t corner_count;
 } nekton_wall_def;
 
 /** offset + amplitude sin(frequency t + phase). */
@@ -429,6 +446,12 @@ typedef struct nekton_link_def {
     double damping;
     /** Torque: u and du/dt at the start. */
     double start[2];
+    /** Curve: which of its points are corners; NEKTON_CORNERS_... */
+    int32_t corners;
+    /** Given corners: numbers of the points, from 0. */
+    const size_t *corner_points;
+    /** Number of given corners. */
+    size_t corner_count;
 } nekton_link_def;
 
 /** A body: a tree of links, of which the first is the root. To be filled by nekton_body_def_init first. */

@@ -58,6 +58,12 @@ typedef struct nekton32_wall_def {
     float angle;
     /** Circulation around an obstacle, m^2/s; must be 0 for the tank. */
     float circulation;
+    /** Curve: which of its points are corners; NEKTON_CORNERS_... */
+    int32_t corners;
+    /** Given corners: numbers of the points, from 0. */
+    const size_t *corner_points;
+    /** Number of given corners. */
+    size_t corner_count;
 } nekton32_wall_def;
 
 /** offset + amplitude sin(frequency t + phase). */
@@ -146,6 +152,12 @@ typedef struct nekton32_link_def {
     float damping;
     /** Torque: u and du/dt at the start. */
     float start[2];
+    /** Curve: which of its points are corners; NEKTON_CORNERS_... */
+    int32_t corners;
+    /** Given corners: numbers of the points, from 0. */
+    const size_t *corner_points;
+    /** Number of given corners. */
+    size_t corner_count;
 } nekton32_link_def;
 
 /** A body: a tree of links, of which the first is the root. To be filled by nekton_body_def_init first. */

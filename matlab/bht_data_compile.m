@@ -348,7 +348,7 @@ switch part.mfilename
         if ~isnumeric(points) || ~isequal(size(points), [2, n]) || ~all(isfinite(points(:)))
             error('nekton:bht:boundary', '%s: %s must give 2 x n finite numbers', where, part.mfilename);
         end
-        shape = struct('curve', points');
+        shape = struct('curve', points', 'corners', 'none');
         at = [0 0];
         t = (0:2047) * 2 * pi / 2048;
         [~, centroid] = bht_area(f(t, 0, s), f(t, 1, s));

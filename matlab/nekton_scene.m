@@ -13,7 +13,7 @@ function [scene, names, run] = nekton_scene(given, controlled)
 %   A body's link (struct array or cell) has name, shape, nodes, circulation, density (or mass, inertia, centre_of_mass),
 %   parent, hinge (or slider) and motion. A shape is a struct with one of the fields ellipse = [a b],
 %   star = [radius amplitude lobes], rectangle = [width height], polygon = n x 2, curve = n x 2, and perhaps radius (of the
-%   corners). A motion is a struct with harmonic (and window) or table = n x 4 with rows (t, u, du, ddu), or locked, or torque
+%   corners) or corners (of a curve: 'auto', 'none' or numbers of points). A motion is a struct with harmonic (and window) or table = n x 4 with rows (t, u, du, ddu), or locked, or torque
 %   (and stiffness, damping, rest, start); the text 'control' stands for what the simulation's function of controls gives,
 %   as a motion and as a torque.
 %
@@ -76,7 +76,7 @@ end
 
 function s = shape(given, where)
 s = get(given, 'shape', []);
-known(s, {'ellipse', 'star', 'rectangle', 'polygon', 'curve', 'radius'}, ['the shape of ' where]);
+known(s, {'ellipse', 'star', 'rectangle', 'polygon', 'curve', 'radius', 'corners'}, ['the shape of ' where]);
 if isfield(s, 'star') && isstruct(s.star)
     s.star = [s.star.radius, s.star.amplitude, s.star.lobes];
 end

@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::ending::say;
+use crate::ending::{say, warn};
 use crate::record::Record;
 use crate::scene_file::Problem;
 use crate::watch::Watch;
@@ -189,7 +189,7 @@ impl Checkpoint {
         if let Err(why) = written
             && !self.complained
         {
-            eprintln!("{}: the checkpoint cannot be written: {why}; the run goes on", self.file.display());
+            warn(&format!("{}: the checkpoint cannot be written: {why}; the run goes on", self.file.display()));
             self.complained = true;
         }
         self.last = Instant::now();

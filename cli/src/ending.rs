@@ -28,6 +28,11 @@ pub fn say(text: &str) {
     }
 }
 
+/// Prints to standard error; if that cannot be written, nobody can be told.
+pub fn warn(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
 /// Whether everything that was said could be written.
 pub fn spoken() -> Result<(), Problem> {
     let failed = FAILED.lock().unwrap_or_else(PoisonError::into_inner).take();

@@ -23,7 +23,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Parser, Subcommand};
-use ending::{Ending, spoken};
+use ending::{Ending, say, spoken, warn};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -165,23 +165,32 @@ fn channel(text: &str) -> Result<(String, PathBuf), String> {
 
 /// Does what the arguments of the process say.
 pub fn command() -> ExitCode {
-    let ending = match Arguments::parse_from(spread(std::env::args_os())).command {
-        Command::Run { scene, out, error, channels, checkpoint, every, resume, force } => {
+    let ending = match Arguments::try_parse_from(spread(std::env::args_os())).map(|a| a.command) {
+        Err(wrong) if wrong.use_stderr() => {
+            warn(wrong.to_string().trim_end());
+            return ExitCode::from(2);
+        }
+        // Help or version was asked for.
+        Err(asked) => {
+            say(asked.to_string().trim_end());
+            Ok(Ending::Complete)
+        }
+        Ok(Command::Run { scene, out, error, channels, checkpoint, every, resume, force }) => {
             let wish = checkpoint::Wish { folder: checkpoint, every, resume, force };
             run::run(&scene, &out, error, &channels, &wish)
         }
-        Command::Trade { scene, out, error, limit, until, quick } => {
+        Ok(Command::Trade { scene, out, error, limit, until, quick }) => {
             trade::trade(&scene, &trade::Wish { out, errors: error, limit, until, quick })
         }
-        Command::Evaluate { scene, json } => evaluate::evaluate(&scene, json),
-        Command::Plan { scene, ingredients: false, .. } => plan::plan(&scene),
-        Command::Plan { scene, csv, .. } => ingredients::print(&scene, csv),
+        Ok(Command::Evaluate { scene, json }) => evaluate::evaluate(&scene, json),
+        Ok(Command::Plan { scene, ingredients: false, .. }) => plan::plan(&scene),
+        Ok(Command::Plan { scene, csv, .. }) => ingredients::print(&scene, csv),
     };
     match ending.and_then(|ending| spoken().map(|()| ending)) {
         Ok(Ending::Complete) => ExitCode::SUCCESS,
         Ok(Ending::Stopped) => ExitCode::from(3),
         Err(problem) => {
-            eprintln!("{problem}");
+            warn(&problem.to_string());
             ExitCode::from(2)
         }
     }

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use nekton::status::{Error, Place, Status};
 
 use crate::checkpoint::{Checkpoint, Wish};
-use crate::ending::{Ending, say};
+use crate::ending::{Ending, say, warn};
 use crate::output::{Earlier, Target, beside, tables};
 use crate::plots;
 use crate::record::{Energies, Nearest, Record, Row, Terms};
@@ -84,12 +84,12 @@ pub fn run(
         None => (target, folder.to_owned()),
         Some(earlier) => {
             let aside = beside(folder);
-            eprintln!(
+            warn(&format!(
                 "{} holds the results of a complete run to t = {} s, which are kept; this one's are in {} (--force replaces)",
                 folder.display(),
                 earlier.reached,
                 aside.display()
-            );
+            ));
             (Target::check(&aside)?, aside)
         }
     };
@@ -362,7 +362,7 @@ fn summary(setup: &Setup, record: &Record, folder: &Path, time: Duration) {
         say(&format!("  notice: {notice}"));
     }
     if let Some(why) = &record.stopped {
-        eprintln!("stopped at {why}; the results up to then are in {}", folder.display());
+        warn(&format!("stopped at {why}; the results up to then are in {}", folder.display()));
     }
     say(&format!("results: {}", folder.join("report.html").display()));
 }

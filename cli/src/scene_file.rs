@@ -25,6 +25,9 @@ pub use run::{Integrator, RunDef};
 use run::{RUN, read_run};
 use shape::{ShapeDef, nodes};
 
+/// Corners that a notice names, at most.
+const MOST_NAMED: usize = 12;
+
 /// A scene with its own data and the lines on which everything stands.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
@@ -189,6 +192,25 @@ impl SceneFile {
     fn link(&self, body: usize, link: usize) -> Option<(&BodyDef, &LinkDef)> {
         let body = self.bodies.get(body)?;
         Some((body, body.links.get(*body.order.get(link)?)?))
+    }
+
+    /// The points that were taken as corners of a curve, for a notice.
+    pub fn corners_found(&self, place: Place) -> String {
+        let shape = match place {
+            Place::Link(b, l) => self.link(b, l).map(|(_, link)| &link.shape),
+            Place::Obstacle(k) => self.obstacles.get(k).map(|w| &w.shape),
+            Place::Tank => self.tank.as_ref().map(|w| &w.shape),
+            _ => None,
+        };
+        let mut all = Vec::new();
+        if let Some(shape) = shape {
+            shape.core().each_corner(|k| all.push(k.to_string()));
+        }
+        let more = if all.len() > MOST_NAMED { format!(" and {} more", all.len() - MOST_NAMED) } else { String::new() };
+        let named = all.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        format!(
+            "kinks at its points {named}{more} (counted from 0) were taken as corners; `corners` in its shape gives others, or \"none\""
+        )
     }
 
     fn lines_of(&self, place: Place) -> &Lines {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use nekton::status::{Error, Place};
+use nekton::status::{Error, Place, Status};
 
 use crate::scene_file::{Integrator, Problem, SceneFile};
 use crate::trade::{Choice, Variant, counts, method, unit};
@@ -115,7 +115,13 @@ impl Setup {
     /// What set-up mended, and what the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         let view = self.model.view();
-        let mended = view.notices().map(|(place, status)| format!("{}: {}", self.scene.name_of(place), status.text()));
+        let mended = view.notices().map(|(place, status)| {
+            let name = self.scene.name_of(place);
+            match status {
+                Status::CornersFound => format!("{name}: {}", self.scene.corners_found(place)),
+                other => format!("{name}: {}", other.text()),
+            }
+        });
         mended.chain(self.bulging()).chain(self.scene.notices()).collect()
     }
 
@@ -127,8 +133,8 @@ impl Setup {
             let (polygon, curve) = (polygon?, view.link(*core)?.area);
             ((curve - polygon).abs() > BULGE * polygon).then(|| {
                 format!(
-                    "link `{label}`: the smooth curve through its points encloses {curve:.4e} m², the polygon {polygon:.4e} m²: for an \
-                     outline with corners use `polygon`, else give more points"
+                    "link `{label}`: the smooth curve through its points encloses {curve:.4e} m², the polygon {polygon:.4e} m²: give \
+                     more points, or `corners`"
                 )
             })
         })

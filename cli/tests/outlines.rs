@@ -64,7 +64,9 @@ fn the_same_outline_in_other_files_is_the_same_body() {
 
 #[test]
 fn a_section_by_formula_is_the_curve_through_its_points() {
-    let place = with("{ naca = \"0030\", chord = 2.0, points = 41 }");
+    // Of 32 nodes the corners of its tail would want more.
+    let scene = |shape: &str| changed(HEAD, &format!("shape = {shape}")).replace("nodes = 32", "nodes = \"auto\"");
+    let place = Place::new(&scene("{ naca = \"0030\", chord = 2.0, points = 41 }"));
     let json = |place: &Place| -> serde_json::Value {
         let done = place.nekton(&["evaluate", "scene.toml", "--json"]);
         assert_eq!(done.code, Some(0), "{}", done.err);
@@ -79,7 +81,7 @@ fn a_section_by_formula_is_the_curve_through_its_points() {
         let x = 0.5 * (1.0 + (std::f64::consts::PI * f64::from(k) / 20.0).cos());
         format!("{:e},{:e}\n", 2.0 * x, 2.0 * half(x) * if k <= 20 { 1.0 } else { -1.0 })
     };
-    place.put("scene.toml", changed(HEAD, "shape = { curve = \"wing.csv\" }"));
+    place.put("scene.toml", scene("{ curve = \"wing.csv\" }"));
     place.put("wing.csv", (0..=40).map(point).collect::<String>());
     let by_points = json(&place);
     let list = |json: &serde_json::Value| -> Vec<f64> {
@@ -128,12 +130,110 @@ fn bad_outline_files_are_refused_with_file_line_and_text() {
         place.put("wing.csv", text);
         refused(&place, told);
     }
-    let place = with("{ curve = \"wing.svg\" }");
-    place.put("wing.svg", "<svg/>");
-    refused(
-        &place,
-        "wing.svg: is an SVG picture, which is not read (write points along its path as lines x,y into a CSV file)",
+    for (name, text) in [("wing.dxf", "  0\nSECTION\n  2\nENTITIES\n"), ("wing.dat", "0\r\nSECTION\r\n")] {
+        let place = with(&format!("{{ curve = \"{name}\" }}"));
+        place.put(name, text);
+        let told = "is a DXF drawing, which is not read (save the outline as one path of an SVG picture, or its vertices as lines \
+                    x,y of a CSV file)";
+        refused(&place, &format!("{name}: {told}"));
+    }
+    for (shape, told) in [
+        ("{ curve = \"wing.csv\", path = \"a\" }", "`path` is for SVG pictures only"),
+        ("{ ellipse = [1.0, 0.4], path = \"a\" }", "`path` is for `curve` with an SVG picture only"),
+    ] {
+        let place = with(shape);
+        place.put("wing.csv", ellipse(","));
+        refused(&place, &format!("scene.toml:10: {told}"));
+    }
+}
+
+fn picture(inside: &str) -> String {
+    format!("<svg xmlns=\"http://www.w3.org/2000/svg\">\n{inside}\n</svg>\n")
+}
+
+/// The head of GOOD alone, with another shape and as many nodes as it takes: mass matrix and added mass.
+fn alone(shape: &str, file: &str) -> (serde_json::Value, [Vec<f64>; 2]) {
+    let place = Place::new(&format!("[[body]]\n[[body.link]]\nshape = {shape}\ndensity = 1.0\n"));
+    place.put("a.svg", file);
+    let done = place.nekton(&["evaluate", "scene.toml", "--json"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    let json: serde_json::Value = serde_json::from_str(&done.out).unwrap();
+    let matrix = |name: &str| -> Vec<f64> {
+        let rows = json[name].as_array().unwrap().iter();
+        rows.flat_map(|r| r.as_array().unwrap().iter().map(|x| x.as_f64().unwrap())).collect()
+    };
+    let matrices = [matrix("mass_matrix"), matrix("added_mass")];
+    (json, matrices)
+}
+
+#[test]
+fn the_curve_through_a_path_s_points_follows_the_path() {
+    // A circle of four cubic pieces encloses 4 (1/2 + 3 k/5 - 3 k²/20) r², by Green's formula on each.
+    let k = 4.0 / 3.0 * (2.0_f64.sqrt() - 1.0);
+    let four = format!("M1 0C1 {k} {k} 1 0 1S-1 {k}-1 0S-{k}-1 0-1S1-{k} 1 0Z");
+    let arcs = "M1 0A1 1 0 0 1-1 0A1 1 0 0 1 1 0Z".to_owned();
+    let pi = std::f64::consts::PI;
+    for (data, area, mass, off) in [(four, 2.0 + 2.4 * k - 0.6 * k * k, pi * 1.0003, 3e-4), (arcs, pi, pi, 1e-8)] {
+        let (_, [all, added]) = alone("{ curve = \"a.svg\" }", &picture(&format!("<path d=\"{data}\"/>")));
+        assert!(((all[0] - added[0]) / area - 1.0).abs() < 1e-8, "{} {area}", all[0] - added[0]);
+        assert!((added[0] / mass - 1.0).abs() < off, "{} {mass}", added[0]);
+    }
+    // An ellipse of arcs, moved: its added mass in closed form.
+    let data = "<g transform=\"translate(7 7) scale(2 1)\"><path d=\"M1 0A1 1 0 0 1-1 0A1 1 0 0 1 1 0Z\"/></g>";
+    let (_, [_, added]) = alone("{ curve = \"a.svg\" }", &picture(data));
+    for (k, right) in [(0, pi), (1, 0.0), (2, 0.0), (4, 4.0 * pi), (5, 0.0), (8, 9.0 * pi / 8.0)] {
+        assert!((added[k] - right).abs() < 1e-7, "{k} {} {right}", added[k]);
+    }
+    // A rectangle with rounded corners.
+    let data = "M1.1 1H4.9A.1 .1 0 0 1 5 1.1V1.9A.1 .1 0 0 1 4.9 2H1.1A.1 .1 0 0 1 1 1.9V1.1A.1 .1 0 0 1 1.1 1Z";
+    let (json, drawn) = alone("{ curve = \"a.svg\" }", &picture(&format!("<g><path id=\"box\" d=\"{data}\"/></g>")));
+    let told = json["outlines"]["body1.link1"].as_str().unwrap();
+    let start = "a.svg (path `box`, 36 curved pieces, 4 straight pieces, y turned upwards): ";
+    assert!(told.starts_with(start), "{told}");
+    assert!(
+        told.contains("chord (along x) 4 m, height (along y) 1 m, area of the polygon through them 3.99"),
+        "{told}"
     );
+    let area = 4.0 - (4.0 - pi) * 0.01;
+    assert!((drawn[0][0] - drawn[1][0] - area).abs() < 1e-8 * area, "{drawn:?} {area}");
+    // That of the scene is rounded a little otherwise.
+    let (_, plain) = alone("{ rectangle = [4.0, 1.0], radius = 0.1 }", "");
+    for (a, b) in drawn.iter().flatten().zip(plain.iter().flatten()) {
+        assert!((a - b).abs() < 2e-4 * plain[0][4], "{drawn:?}\n{plain:?}");
+    }
+    // One of several by its name, and nothing beside it.
+    let many = picture(&format!("<rect/><path id=\"one\" d=\"M0 0H9V9Z\"/><path id=\"two\" d=\"{data}\"/>"));
+    assert_eq!(alone("{ curve = \"a.svg\", path = \"two\" }", &many).1, drawn);
+}
+
+#[test]
+fn bad_pictures_are_refused_with_file_line_and_a_way_out() {
+    let place = with("{ curve = \"wing.svg\" }");
+    for (text, told) in [
+        (picture(""), "wing.svg: has no path (an outline is a <path> that is drawn)"),
+        (
+            picture("<path id=\"a\" d=\"M0 0H2V1\"/>"),
+            "wing.svg:2: path `a` is open: it begins at [0, 0] and ends at [2, -1] (y upwards) (close it, by a Z at the end of its d)",
+        ),
+        (
+            picture("<path d=\"M0 0H2V1Z\"/><circle r=\"1\"/>"),
+            "wing.svg: draws 2 things, but an outline is one: a path without id, a <circle> (name one with path = \"id\" beside \
+             `curve`, or delete the others)",
+        ),
+        ("1,2\n2,3\n".to_owned(), "wing.svg: has 2 points"),
+    ] {
+        place.put("wing.svg", &text);
+        let done = place.nekton(&["plan", "scene.toml"]);
+        assert!(done.code == Some(2) && done.err.starts_with(told) && done.err.lines().count() == 1, "{}", done.err);
+    }
+    place.put("wing.svg", b"\x1f\x8b\x08\x00");
+    refused(&place, "wing.svg: is compressed (save it as plain SVG or CSV)");
+    place.put("wing.svg", b"\x89PNG\r\n\x1a\n\x00\x00");
+    let hint = "an outline is a CSV file with columns x,y, an aerofoil's .dat file, or an SVG picture";
+    refused(&place, &format!("wing.svg: is not text ({hint})"));
+    let place = with("{ curve = \"wing.svg\", path = \"fin\" }");
+    place.put("wing.svg", picture("<path id=\"fun\" d=\"M0 0H2V1Z\"/>"));
+    refused(&place, "wing.svg: has no path with the id `fin` (did you mean `fun`?)");
 }
 
 #[cfg(unix)]

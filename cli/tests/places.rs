@@ -23,6 +23,11 @@ fn standard_output_that_is_full_is_an_error() {
         &["plan", "scene.toml"],
         &["plan", "scene.toml", "--ingredients", "--csv"],
         &["run", "scene.toml", "--out", "results"],
+        &["trade", "scene.toml", "--quick", "--until", "0.1", "--limit", "0.2"],
+        &["--help"],
+        &["--version"],
+        &["help", "run"],
+        &["plan", "--help"],
     ] {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let done = command(&place, arguments).stdout(full).output().unwrap();
@@ -37,11 +42,23 @@ fn standard_output_that_is_full_is_an_error() {
 #[test]
 fn a_reader_that_has_gone_away_is_no_error() {
     let place = Place::new(GOOD);
-    for arguments in [&["evaluate", "scene.toml", "--json"][..], &["plan", "scene.toml"]] {
+    for arguments in [&["evaluate", "scene.toml", "--json"][..], &["plan", "scene.toml"], &["--help"], &["--version"]] {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let done = command(&place, arguments).stdout(writer).stderr(Stdio::piped()).output().unwrap();
         assert_eq!((done.status.code(), done.stderr.as_slice()), (Some(0), &b""[..]), "{arguments:?}");
+    }
+}
+
+#[test]
+fn standard_error_that_is_full_changes_no_exit_code() {
+    let place = Place::new(GOOD);
+    for (arguments, code) in
+        [(&["plan", "absent.toml"][..], 2), (&["plan"], 2), (&["no-such-command"], 2), (&["plan", "scene.toml"], 0)]
+    {
+        let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let done = command(&place, arguments).stderr(full).output().unwrap();
+        assert_eq!(done.status.code(), Some(code), "{arguments:?}");
     }
 }
 

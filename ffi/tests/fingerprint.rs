@@ -75,6 +75,8 @@ impl Set {
         (shape.kind, shape.width, shape.height, shape.corner_radius) = (NEKTON_SHAPE_RECTANGLE, 0.8, 0.4, 0.1);
         let shape = &mut s.links[CURVE].shape;
         (shape.kind, shape.points, shape.point_count) = (NEKTON_SHAPE_CURVE, s.knots.as_ptr(), 6);
+        let curve = &mut s.links[CURVE];
+        (curve.corners, curve.corner_points, curve.corner_count) = (NEKTON_CORNERS_GIVEN, EVEN.as_ptr(), 2);
         for (b, (first, count)) in [(STAR, 5), (BOX, 1), (CURVE, 1)].into_iter().enumerate() {
             let body = &mut s.bodies[b];
             (body.pose, body.velocity) = ([6.0 * b as f64, 0.1, 0.2], [0.1, 0.0, 0.05]);
@@ -88,6 +90,10 @@ impl Set {
         let tank = &mut s.walls[2];
         (tank.shape.a, tank.shape.b, tank.position, tank.nodes) = (40.0, 30.0, [0.0, 0.0], 32);
         s.walls[0].circulation = 0.1;
+        let cornered = &mut s.walls[0];
+        (cornered.shape.kind, cornered.shape.points, cornered.shape.point_count) =
+            (NEKTON_SHAPE_CURVE, s.knots.as_ptr(), 6);
+        (cornered.corners, cornered.corner_points, cornered.corner_count) = (NEKTON_CORNERS_GIVEN, EVEN.as_ptr(), 2);
         let scene = &mut s.scene;
         (scene.gravity, scene.repulsion_epsilon, scene.quadrature) = (0.5, 1e-4, NEKTON_QUADRATURE_PLAIN);
         // Few nodes, so that it is quick.
@@ -97,6 +103,10 @@ impl Set {
         set
     }
 }
+
+/// Corners of the curves.
+static EVEN: [usize; 2] = [0, 2];
+static ODD: [usize; 2] = [1, 3];
 
 type Change = fn(&mut Set);
 
@@ -148,6 +158,9 @@ fn changes() -> Vec<(&'static str, Change)> {
             nodes: [|s| s.walls[1].nodes = 18, |s| s.walls[2].nodes = 34],
             angle: [|s| s.walls[1].angle = 0.2, |s| s.walls[2].angle = 0.2],
             circulation: [|s| s.walls[0].circulation = 0.2, |s| s.walls[1].circulation = 0.2],
+            corners: [|s| s.walls[0].corners = NEKTON_CORNERS_NONE, |s| s.walls[0].corners = NEKTON_CORNERS_AUTO],
+            corner_points: [|s| s.walls[0].corner_points = ODD.as_ptr()],
+            corner_count: [|s| s.walls[0].corner_count = 1],
         }),
         fields!(LinkDef {
             struct_size: [],
@@ -179,6 +192,12 @@ fn changes() -> Vec<(&'static str, Change)> {
             stiffness: [|s| s.links[SLIDE].stiffness = 1.1],
             damping: [|s| s.links[SLIDE].damping = 0.2, |s| s.links[TAIL].damping = 0.1],
             start: [|s| s.links[SLIDE].start[0] = 0.0, |s| s.links[SLIDE].start[1] = 0.0],
+            corners: [
+                |s| s.links[CURVE].corners = NEKTON_CORNERS_NONE,
+                |s| s.links[CURVE].corners = NEKTON_CORNERS_AUTO
+            ],
+            corner_points: [|s| s.links[CURVE].corner_points = ODD.as_ptr()],
+            corner_count: [|s| s.links[CURVE].corner_count = 1],
         }),
         fields!(BodyDef {
             struct_size: [],

@@ -59,6 +59,47 @@ fn memory_is_used_exactly_as_far_as_required_and_anywhere() {
 }
 
 #[test]
+fn corners_of_curves_are_found_given_or_left_out_and_a_wrong_number_is_refused() {
+    with_scene(|def, bodies, _| {
+        let corner = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        // Three points on each side between the corners.
+        let point = |k: usize| -> [f64; 2] {
+            let (a, b, t): ([f64; 2], [f64; 2], f64) = (corner[k / 4], corner[(k / 4 + 1) % 4], (k % 4) as f64 / 4.0);
+            [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+        };
+        let points: Vec<[f64; 2]> = (0..16).map(point).collect();
+        let mut square = link();
+        (square.shape.kind, square.shape.points, square.shape.point_count) =
+            (NEKTON_SHAPE_CURVE, points.as_ptr(), points.len());
+        // Between the others' curved flanks a smooth curve is larger.
+        let mut area = |corners: i32, given: &[usize]| {
+            (square.corners, square.corner_points, square.corner_count) = (corners, given.as_ptr(), given.len());
+            (bodies[0].links, bodies[0].link_count) = (&raw const square, 1);
+            bodies[0].pose = [0.0, 5.0, 0.0];
+            let (mut model, mut diag) = (null_mut(), empty_diag());
+            let status = unsafe { model_create(def.get(), &mut model, &mut diag) };
+            if status < 0 {
+                return (status, f64::NAN, diag.value);
+            }
+            let mut info = unsafe { std::mem::zeroed::<LinkOut<f64>>() };
+            assert_eq!(unsafe { model_link(model, 0, &mut info) }, 0);
+            assert_eq!(unsafe { model_free(model) }, 0);
+            (status, info.area, f64::NAN)
+        };
+        let (found, by_itself, _) = area(NEKTON_CORNERS_AUTO, &[]);
+        assert_eq!(found, Status::CornersFound.code());
+        assert!((by_itself - 4.0).abs() < 1e-9, "{by_itself}");
+        let (given, same, _) = area(NEKTON_CORNERS_GIVEN, &[12, 0, 4, 8]);
+        assert_eq!((given, same.to_bits()), (0, by_itself.to_bits()));
+        let (smooth, bulging, _) = area(NEKTON_CORNERS_NONE, &[]);
+        assert!(smooth == 0 && bulging > 4.0 + 1e-3, "{bulging}");
+        let (wrong, _, value) = area(NEKTON_CORNERS_GIVEN, &[0, 16]);
+        assert_eq!((wrong, value), (Status::OutOfRange.code(), 16.0));
+        assert_eq!(area(3, &[]).0, Status::UnknownKind.code());
+    });
+}
+
+#[test]
 fn outlines_that_were_turned_round_are_a_notice() {
     with_scene(|def, bodies, _| {
         const CLOCKWISE: [[f64; 2]; 3] = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]];

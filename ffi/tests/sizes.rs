@@ -100,6 +100,29 @@ macro_rules! sizes {
             let older = SceneDef { struct_size: before, allow_unresolved: 77, reserved: 77, ..old };
             assert_eq!(run(&older, &adams()), of_today);
 
+            // Nor does one from before `corners`: his array is walked by the size that he knows.
+            let end = offset_of!(LinkDef<Real>, corners);
+            let mut bytes = vec![0xa5_u8; 2 * end + size_of::<LinkDef<Real>>()];
+            let mut aligned = vec![0_u64; bytes.len() / 8 + 1];
+            for (k, def) in known.iter().take(2).enumerate() {
+                let old = LinkDef { struct_size: end as u32, corners: 77, ..*def };
+                unsafe {
+                    let to = bytes.as_mut_ptr().add(k * end);
+                    core::ptr::copy_nonoverlapping((&raw const old).cast::<u8>(), to, end);
+                }
+            }
+            unsafe {
+                core::ptr::copy_nonoverlapping(bytes.as_ptr(), aligned.as_mut_ptr().cast::<u8>(), bytes.len());
+            }
+            let end = offset_of!(WallDef<Real>, corners) as u32;
+            let of_old = old_walls.map(|wall| WallDef { struct_size: end, corners: 77, ..wall });
+            let lone = LinkDef { struct_size: offset_of!(LinkDef<Real>, corners) as u32, corners: 77, ..known[2] };
+            let mut bodies_of_old = old_bodies;
+            (bodies_of_old[0].links, bodies_of_old[1].links) = (aligned.as_ptr().cast(), &lone);
+            let older = SceneDef { obstacles: &of_old[0], obstacle_count: 1, bodies: bodies_of_old.as_ptr(), ..old };
+            let one = SceneDef { obstacle_count: 1, ..old };
+            assert_eq!(run(&older, &adams()), run(&one, &adams()));
+
             // A field that this library does not know, set by a newer caller, is refused, and the place is told.
             let mut diag = empty_diag();
             let mut req = nekton_req::default();

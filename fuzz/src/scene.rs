@@ -20,6 +20,7 @@ struct Store<R> {
     points: Vec<Vec<[R; 2]>>,
     harmonics: Vec<Vec<HarmonicDef<R>>>,
     rows: Vec<Vec<[R; 4]>>,
+    corners: Vec<Vec<usize>>,
 }
 
 /// A true pointer; seldom NULL or misaligned.
@@ -122,7 +123,20 @@ impl<R: Number> Store<R> {
             angle: R::of(bytes.real(0.3)),
             nodes: nodes(bytes),
             circulation: R::of(if bytes.below(4) == 0 { bytes.real(0.5) } else { 0.0 }),
+            ..zeroed::<WallDef<R>>()
         }
+    }
+
+    /// Kind, numbers and count of corners.
+    fn corners(&mut self, bytes: &mut Bytes<'_>) -> (i32, *const usize, usize) {
+        let mut number = || {
+            let most = if bytes.chance(3) { 99 } else { 5 };
+            bytes.below(most)
+        };
+        let numbers: Vec<usize> = (0..number().min(3)).map(|_| number()).collect();
+        let all = (bytes.kind(3), pointer(bytes, &numbers), numbers.len());
+        self.corners.push(numbers);
+        all
     }
 
     fn link(&mut self, bytes: &mut Bytes<'_>, l: usize) -> LinkDef<R> {
@@ -154,6 +168,7 @@ impl<R: Number> Store<R> {
         link.nodes = nodes(bytes);
         link.shape = self.shape(bytes, 1.0);
         link.signal = self.signal(bytes);
+        (link.corners, link.corner_points, link.corner_count) = self.corners(bytes);
         link
     }
 }
@@ -179,7 +194,7 @@ fn nodes(bytes: &mut Bytes<'_>) -> usize {
 impl<R: Number> Definition<R> {
     /// Reads a definition. `version` is the one that the library asks for.
     pub fn new(bytes: &mut Bytes<'_>, version: u32) -> Self {
-        let mut store = Store { points: Vec::new(), harmonics: Vec::new(), rows: Vec::new() };
+        let mut store = Store { points: Vec::new(), harmonics: Vec::new(), rows: Vec::new(), corners: Vec::new() };
         let tank: Vec<_> = (0..bytes.below(2)).map(|_| store.wall(bytes, 12.0, [2.0, 0.0])).collect();
         let obstacles = (0..bytes.below(3)).map(|i| store.wall(bytes, 0.7, [3.0 * i as f64, 3.2]));
         let obstacles: Vec<_> = obstacles.collect();

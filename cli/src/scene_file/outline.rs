@@ -1,7 +1,13 @@
-//! Outlines as people have them: aerofoil files of Selig's and Lednicer's kind, CSV of any sort, and sections by formula.
+//! Outlines as people have them: aerofoil files of Selig's and Lednicer's kind, CSV of any sort, paths of SVG pictures, and sections
+//! by formula.
 
 mod cells;
+mod drawing;
+#[cfg(test)]
+mod drawing_test;
 pub mod naca;
+mod path;
+mod points;
 #[cfg(test)]
 mod tests;
 
@@ -10,81 +16,34 @@ use std::path::Path;
 use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
+use points::MOST;
+pub use points::Outline;
 
-/// Points of a file, at most.
-const MOST: usize = 100_000;
 /// Both surfaces of a section begin, and end, at most this part of its chord apart.
 const OPEN: f64 = 0.1;
 /// A nose that both surfaces have is one point if their first points differ by less than this part of the spacing.
 const SAME: f64 = 1e-6;
 
-/// Points along a closed line, and what the user is told of them if they did not write them into the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outline {
-    /// In order.
-    pub points: Vec<[f64; 2]>,
-    /// Where they are from and what they enclose.
-    pub told: Option<String>,
-}
-
 impl Outline {
-    /// Points with a word on where they are from.
-    pub fn new(points: Vec<[f64; 2]>, from: &str) -> Self {
-        let told = Some(format!("{from}: {}", description(&points)));
-        Outline { points, told }
-    }
-
-    /// Area of the polygon through the points.
-    pub fn polygon_area(&self) -> f64 {
-        0.5 * twice_area(&self.points).abs()
-    }
-
-    /// The file that an item names.
-    pub fn open(from: &Item<'_>) -> Outcome<Self> {
+    /// The file that an item names, and in a picture the path that another one names.
+    pub fn open(from: &Item<'_>, id: Option<&Item<'_>>) -> Outcome<Self> {
         let path = from.source.relative(from.text()?);
         let bytes = file::read(&path, file::OUTLINE)
             .map_err(|e| from.problem(format!("names {}, which cannot be read: {e}", path.display())))?;
-        let (points, kind) = read(&path, &bytes)?;
+        let text = cells::text(&path, &bytes)?;
+        let (outline, kind) = match id {
+            _ if drawing::is_xml(&text) => drawing::read(&path, &text, id.map(Item::text).transpose()?)?,
+            Some(id) => return Err(id.problem("is for SVG pictures only")),
+            None => read(&path, &text).map(|(points, kind)| (Self::of(points), kind))?,
+        };
         // By the name in the scene: where the scene is, is of no importance.
-        Ok(Self::new(points, &format!("{}{kind}", from.text()?)))
+        Ok(outline.described(&format!("{}{kind}", from.text()?)))
     }
 }
 
-/// Twice the signed area of the polygon through points.
-fn twice_area(points: &[[f64; 2]]) -> f64 {
-    // About one of them: far from the origin the digits would be lost.
-    let [x, y] = points.first().copied().unwrap_or_default();
-    let pairs = points.iter().zip(points.iter().cycle().skip(1));
-    pairs.map(|(p, q)| (p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)).sum()
-}
-
-/// A number with six digits.
-fn six(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
-}
-
-/// Number of points, direction, extent along x and y, and the area of the polygon through the points.
-fn description(points: &[[f64; 2]]) -> String {
-    let range = |c: usize| {
-        let all = points.iter().map(|p| p[c]);
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
-    };
-    let twice = twice_area(points);
-    let way = if twice < 0.0 { "clockwise" } else { "counter-clockwise" };
-    let size = |[a, b]: [f64; 2]| six(b - a);
-    format!(
-        "{} points, {way}, chord (along x) {} m, height (along y) {} m, area of the polygon through them {} m²",
-        points.len(),
-        size(range(0)),
-        size(range(1)),
-        six(0.5 * twice.abs())
-    )
-}
-
 /// The points of a file, as they stand there, and in brackets what was understood beyond two columns of numbers.
-fn read(path: &Path, bytes: &[u8]) -> Outcome<(Vec<[f64; 2]>, String)> {
-    let text = cells::text(path, bytes)?;
-    let mut sheet = cells::sheet(path, &text)?;
+fn read(path: &Path, text: &str) -> Outcome<(Vec<[f64; 2]>, String)> {
+    let mut sheet = cells::sheet(path, text)?;
     let mut kind = Vec::new();
     let single = lone_number(path, &mut sheet)?;
     let (columns, header) = columns(path, &mut sheet)?;

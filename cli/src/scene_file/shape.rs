@@ -62,6 +62,7 @@ impl ShapeDef {
             "points",
             "tail",
             "corners",
+            "path",
         ];
         let section = item.section("`shape`", KEYS)?;
         let (kind, value) = section.one_of(KINDS)?;
@@ -75,13 +76,20 @@ impl ShapeDef {
         if let Some(other) = stranger {
             return Err(other.problem("is for `naca` only"));
         }
+        let drawn = section.get("path");
+        if let Some(p) = drawn.as_ref().filter(|_| kind != "curve" || !value.is_text()) {
+            return Err(p.problem("is for `curve` with an SVG picture only"));
+        }
         let corners = match section.get("corners") {
             Some(c) if !matches!(kind, "curve" | "naca") => return Err(c.problem("is for `curve` and `naca` only")),
             other => other,
         };
         let curve = |outline: Outline| {
             let corners = corners.as_ref().map(|c| CornersDef::read(c, outline.points.len())).transpose()?;
-            Ok(ShapeDef::Curve(outline, corners.unwrap_or(CornersDef::Word(Corners::Auto))))
+            // A picture knows its corners.
+            let known = || outline.corners.clone().map_or(CornersDef::Word(Corners::Auto), CornersDef::At);
+            let corners = corners.unwrap_or_else(known);
+            Ok(ShapeDef::Curve(outline, corners))
         };
         let measures = || {
             let pair = value.pair()?;
@@ -107,14 +115,14 @@ impl ShapeDef {
                 ShapeDef::Star(star.need("radius")?.positive()?, size, lobes.count()?)
             }
             "naca" => curve(naca(&section, &value)?)?,
-            "curve" if value.is_text() => curve(Outline::open(&value)?)?,
+            "curve" if value.is_text() => curve(Outline::open(&value, drawn.as_ref())?)?,
             _ => {
                 let points = value.points()?;
                 if points.len() < 3 {
                     return Err(value.problem(format!("needs at least 3 points, but has {}", points.len())));
                 }
                 match kind {
-                    "curve" => curve(Outline { points, told: None })?,
+                    "curve" => curve(Outline::of(points))?,
                     _ => ShapeDef::Polygon(points, radius),
                 }
             }

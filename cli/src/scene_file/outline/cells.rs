@@ -46,22 +46,27 @@ pub fn text(path: &Path, bytes: &[u8]) -> Outcome<String> {
     };
     let file = |message: &str, hint: &str| Err(Problem::file(path, message).hint(hint));
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let start = text.trim_start();
-    let mut first = start.lines().map(str::trim);
-    if ending == "svg" || start.starts_with("<?xml") || start.starts_with("<svg") {
+    let mut first = text.trim_start().lines().map(str::trim);
+    if bytes.starts_with(b"AutoCAD Binary DXF")
+        || ending == "dxf"
+        || (first.next() == Some("0") && first.next() == Some("SECTION"))
+    {
         return file(
-            "is an SVG picture, which is not read",
-            "write points along its path as lines x,y into a CSV file",
+            "is a DXF drawing, which is not read",
+            "save the outline as one path of an SVG picture, or its vertices as lines x,y of a CSV file",
         );
     }
-    if ending == "dxf" || (first.next() == Some("0") && first.next() == Some("SECTION")) {
-        return file("is a DXF drawing, which is not read", "write the vertices as lines x,y into a CSV file");
+    if bytes.starts_with(b"\x1f\x8b") {
+        return file("is compressed", "save it as plain SVG or CSV");
     }
     if bytes.starts_with(b"PK\x03\x04") {
         return file("is a spreadsheet or an archive, not text", "save the sheet as CSV");
     }
     if text.contains('\0') {
-        return file("is not text", "an outline is a CSV file with columns x,y, or an aerofoil's .dat file");
+        return file(
+            "is not text",
+            "an outline is a CSV file with columns x,y, an aerofoil's .dat file, or an SVG picture",
+        );
     }
     Ok(text)
 }

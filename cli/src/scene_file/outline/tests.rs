@@ -1,12 +1,15 @@
 use std::path::Path;
 
 use super::naca::{Naca, Tail};
-use super::{description, read};
+use super::points::description;
+use super::read;
 
 type Points = Vec<[f64; 2]>;
 
 fn reads(text: impl AsRef<[u8]>) -> Result<(Points, String), String> {
-    read(Path::new("o.csv"), text.as_ref()).map_err(|p| p.to_string())
+    super::cells::text(Path::new("o.csv"), text.as_ref())
+        .and_then(|t| read(Path::new("o.csv"), &t))
+        .map_err(|p| p.to_string())
 }
 
 const SQUARE: [[f64; 2]; 4] = [[0.0, 0.5], [1.0, 0.25], [1.5, 1.0], [-0.5, 0.75]];
@@ -87,7 +90,6 @@ fn what_is_no_outline_is_refused_with_file_line_and_text() {
         ("2412\n0 0\n1 0\n1 1\n", "o.csv:1: `2412` stands alone and is not the number of the 3 lines below"),
         ("a\n1 0\n0 0\n1 1\n999.0 999.0\n1 2\n0 2\n", "o.csv:5: 999 999 parts two outlines"),
         ("0,0\n1,0\n", "o.csv: has 2 points; an outline needs at least 3"),
-        ("<svg xmlns=\"\"><path d=\"M0 0\"/></svg>", "o.csv: is an SVG picture, which is not read"),
         ("  0\nSECTION\n  2\nENTITIES\n", "o.csv: is a DXF drawing, which is not read"),
         ("PK\u{3}\u{4}\0\0", "o.csv: is a spreadsheet or an archive"),
         ("\u{7f}ELF\0\0\0", "o.csv: is not text"),

@@ -4,7 +4,7 @@
 //! them, γ(s) = flank(s) + (t₋ + t₊) r ln(1 + e^(−s/r)), as polygons have it: the curve through all of them is as smooth as any other.
 //! A flank next to the corner is the parabola through it and the two points that follow.
 //!
-//! Tested by the tests at its end, `tests/tests/defaults.rs`, `tests/tests/corners.rs`.
+//! Tested by the tests at its end, `tests/tests/defaults.rs`.
 
 use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::scalar::Real;
@@ -188,9 +188,9 @@ impl<'a, R: Real> Kinked<'a, R> {
         })
     }
 
-    /// There is one.
-    pub(super) fn any(&self) -> bool {
-        (0..self.points.len()).any(|i| self.is_corner(i))
+    /// Numbers of the corners.
+    pub(super) fn all(&self) -> impl Iterator<Item = usize> {
+        (0..self.points.len()).filter(|i| self.is_corner(*i))
     }
 
     /// The given point that point `k` of the curve comes from.
@@ -250,8 +250,7 @@ mod tests {
     type Points = Vec<[f64; 2]>;
 
     fn found(points: &[[f64; 2]]) -> Vec<usize> {
-        let kinked = Kinked::new(points, Corners::Auto);
-        (0..points.len()).filter(|i| kinked.is_corner(*i)).collect()
+        Kinked::new(points, Corners::Auto).all().collect()
     }
 
     /// Section of relative thickness t by x along its upper side, from the tail, which closes with the coefficient 0.1036.

@@ -154,6 +154,14 @@ impl<R: Real> Shape<'_, R> {
         }
     }
 
+    /// Visits the numbers of the points at which a curve has corners, given or found; nothing for other shapes. O(points), times the number
+    /// of corners if they are given.
+    pub fn each_corner(&self, visit: impl FnMut(usize)) {
+        if let Shape::Curve { points, corners } = *self {
+            Kinked::new(points, corners).all().for_each(visit);
+        }
+    }
+
     fn sizes(&self) -> Result<Sizes> {
         let polygon = |vertices: &[[R; 2]], radius: Option<R>| {
             let n = vertices.len();
@@ -286,7 +294,7 @@ impl<R: Real> Shape<'_, R> {
                 if enclosed <= size * R::EPSILON * R::lit(64.0) || enclosed.is_nan() {
                     return Err(Error::new(Status::BadShape).of("area", enclosed.to_f64()));
                 }
-                let found = corners == Corners::Auto && kinked.any();
+                let found = corners == Corners::Auto && kinked.all().next().is_some();
                 let status = match (found, clockwise) {
                     (true, _) => Status::CornersFound,
                     (_, true) => Status::OutlineReversed,

@@ -1,0 +1,67 @@
+//! The points of an outline and what is told of them.
+
+/// Points of a file, at most.
+pub const MOST: usize = 100_000;
+
+/// Points along a closed line, and what the user is told of them if they did not write them into the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// In order.
+    pub points: Vec<[f64; 2]>,
+    /// Where they are from and what they enclose.
+    pub told: Option<String>,
+    /// Which points are corners, if that is known.
+    pub corners: Option<Vec<usize>>,
+}
+
+impl Outline {
+    /// Points with a word on where they are from.
+    pub fn new(points: Vec<[f64; 2]>, from: &str) -> Self {
+        Self::of(points).described(from)
+    }
+
+    /// Points of which nothing is told.
+    pub fn of(points: Vec<[f64; 2]>) -> Self {
+        Outline { points, told: None, corners: None }
+    }
+
+    pub fn described(self, from: &str) -> Self {
+        Outline { told: Some(format!("{from}: {}", description(&self.points))), ..self }
+    }
+
+    /// Area of the polygon through the points.
+    pub fn polygon_area(&self) -> f64 {
+        0.5 * twice_area(&self.points).abs()
+    }
+}
+
+/// Twice the signed area of the polygon through points.
+pub fn twice_area(points: &[[f64; 2]]) -> f64 {
+    // About one of them: far from the origin the digits would be lost.
+    let [x, y] = points.first().copied().unwrap_or_default();
+    let pairs = points.iter().zip(points.iter().cycle().skip(1));
+    pairs.map(|(p, q)| (p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)).sum()
+}
+
+/// A number with six digits.
+fn six(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// Number of points, direction, extent along x and y, and the area of the polygon through the points.
+pub fn description(points: &[[f64; 2]]) -> String {
+    let range = |c: usize| {
+        let all = points.iter().map(|p| p[c]);
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+    };
+    let twice = twice_area(points);
+    let way = if twice < 0.0 { "clockwise" } else { "counter-clockwise" };
+    let size = |[a, b]: [f64; 2]| six(b - a);
+    format!(
+        "{} points, {way}, chord (along x) {} m, height (along y) {} m, area of the polygon through them {} m²",
+        points.len(),
+        size(range(0)),
+        size(range(1)),
+        six(0.5 * twice.abs())
+    )
+}
