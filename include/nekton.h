@@ -354,6 +354,8 @@ typedef struct nekton_wall_def {
     double circulation;
     /** Curve: which of its points are corners; NEKTON_CORNERS_... */
     int32_t corners;
+    /** Must be 0. */
+    int32_t corners_reserved;
     /** Given corners: numbers of the points, from 0. */
     const size_t *corner_points;
     /** Number of given corners. */
@@ -448,6 +450,8 @@ typedef struct nekton_link_def {
     double start[2];
     /** Curve: which of its points are corners; NEKTON_CORNERS_... */
     int32_t corners;
+    /** Must be 0. */
+    int32_t corners_reserved;
     /** Given corners: numbers of the points, from 0. */
     const size_t *corner_points;
     /** Number of given corners. */

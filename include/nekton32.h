@@ -60,6 +60,8 @@ typedef struct nekton32_wall_def {
     float circulation;
     /** Curve: which of its points are corners; NEKTON_CORNERS_... */
     int32_t corners;
+    /** Must be 0. */
+    int32_t corners_reserved;
     /** Given corners: numbers of the points, from 0. */
     const size_t *corner_points;
     /** Number of given corners. */
@@ -154,6 +156,8 @@ typedef struct nekton32_link_def {
     float start[2];
     /** Curve: which of its points are corners; NEKTON_CORNERS_... */
     int32_t corners;
+    /** Must be 0. */
+    int32_t corners_reserved;
     /** Given corners: numbers of the points, from 0. */
     const size_t *corner_points;
     /** Number of given corners. */

@@ -46,7 +46,10 @@ pub(crate) fn check_pointer<T>(what: &'static str, pointer: *const T) -> Outcome
     Ok(())
 }
 
-unsafe fn corners<'a>(kind: i32, points: *const usize, count: usize) -> Outcome<Corners<'a>> {
+unsafe fn corners<'a>(kind: i32, reserved: i32, points: *const usize, count: usize) -> Outcome<Corners<'a>> {
+    if reserved != 0 {
+        return Err(Fault::of(Status::Unsupported, "corners_reserved", f64::from(reserved)));
+    }
     Ok(match kind {
         NEKTON_CORNERS_AUTO => Corners::Auto,
         NEKTON_CORNERS_NONE => Corners::None,
@@ -95,7 +98,7 @@ pub(crate) unsafe fn signal<'a, R: Real>(s: &SignalDef<R>) -> Outcome<Signal<'a,
 pub(crate) unsafe fn wall<'a, R: Real>(w: &WallDef<R>) -> Outcome<Wall<'a, R>> {
     Ok(Wall {
         // SAFETY: the caller's promise about the definition.
-        shape: unsafe { shape(&w.shape, corners(w.corners, w.corner_points, w.corner_count)?) }?,
+        shape: unsafe { shape(&w.shape, corners(w.corners, w.corners_reserved, w.corner_points, w.corner_count)?) }?,
         position: w.position,
         angle: w.angle,
         nodes: w.nodes,
@@ -111,7 +114,7 @@ pub(crate) unsafe fn link<'a, R: Real>(l: &LinkDef<R>) -> Outcome<Link<'a, R>> {
     };
     // SAFETY (all): the caller's promise about the definition.
     let joint = if l.parent == -1 { None } else { Some(unsafe { joint(l) }?) };
-    let corners = unsafe { corners(l.corners, l.corner_points, l.corner_count) }?;
+    let corners = unsafe { corners(l.corners, l.corners_reserved, l.corner_points, l.corner_count) }?;
     let shape = unsafe { shape(&l.shape, corners) }?;
     Ok(Link { shape, mass, nodes: l.nodes, circulation: l.circulation, joint })
 }

@@ -81,6 +81,7 @@ impl<R: Real> Definition for WallDef<R> {
             angle: zero,
             circulation: zero,
             corners: NEKTON_CORNERS_AUTO,
+            corners_reserved: 0,
             corner_points: core::ptr::null(),
             corner_count: 0,
         }
@@ -117,6 +118,7 @@ impl<R: Real> Definition for LinkDef<R> {
             damping: zero,
             start: [zero; 2],
             corners: NEKTON_CORNERS_AUTO,
+            corners_reserved: 0,
             corner_points: core::ptr::null(),
             corner_count: 0,
         }

@@ -159,6 +159,8 @@ fn changes() -> Vec<(&'static str, Change)> {
             angle: [|s| s.walls[1].angle = 0.2, |s| s.walls[2].angle = 0.2],
             circulation: [|s| s.walls[0].circulation = 0.2, |s| s.walls[1].circulation = 0.2],
             corners: [|s| s.walls[0].corners = NEKTON_CORNERS_NONE, |s| s.walls[0].corners = NEKTON_CORNERS_AUTO],
+            // Refused unless it is 0.
+            corners_reserved: [],
             corner_points: [|s| s.walls[0].corner_points = ODD.as_ptr()],
             corner_count: [|s| s.walls[0].corner_count = 1],
         }),
@@ -196,6 +198,8 @@ fn changes() -> Vec<(&'static str, Change)> {
                 |s| s.links[CURVE].corners = NEKTON_CORNERS_NONE,
                 |s| s.links[CURVE].corners = NEKTON_CORNERS_AUTO
             ],
+            // Refused unless it is 0.
+            corners_reserved: [],
             corner_points: [|s| s.links[CURVE].corner_points = ODD.as_ptr()],
             corner_count: [|s| s.links[CURVE].corner_count = 1],
         }),

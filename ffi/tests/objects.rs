@@ -96,6 +96,10 @@ fn corners_of_curves_are_found_given_or_left_out_and_a_wrong_number_is_refused()
         let (wrong, _, value) = area(NEKTON_CORNERS_GIVEN, &[0, 16]);
         assert_eq!((wrong, value), (Status::OutOfRange.code(), 16.0));
         assert_eq!(area(3, &[]).0, Status::UnknownKind.code());
+        let reserved = LinkDef { corners: NEKTON_CORNERS_NONE, corners_reserved: 1, ..square };
+        bodies[0].links = &raw const reserved;
+        let (mut model, mut diag) = (null_mut(), empty_diag());
+        assert_eq!(unsafe { model_create(def.get(), &mut model, &mut diag) }, Status::Unsupported.code());
     });
 }
 

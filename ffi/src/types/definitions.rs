@@ -125,6 +125,8 @@ pub struct WallDef<R> {
     pub circulation: R,
     /// Curve: which of its points are corners; NEKTON_CORNERS_...
     pub corners: i32,
+    /// Must be 0.
+    pub corners_reserved: i32,
     /// Given corners: numbers of the points, from 0.
     pub corner_points: *const usize,
     /// Number of given corners.
@@ -198,6 +200,8 @@ pub struct LinkDef<R> {
     pub start: [R; 2],
     /// Curve: which of its points are corners; NEKTON_CORNERS_...
     pub corners: i32,
+    /// Must be 0.
+    pub corners_reserved: i32,
     /// Given corners: numbers of the points, from 0.
     pub corner_points: *const usize,
     /// Number of given corners.
