@@ -262,6 +262,20 @@ mod tests {
         agree::<f32>();
     }
 
+    fn roots_agree<R: Real>() {
+        for x in many(1e-12, 500.0).into_iter().filter(|x| *x > 0.0).map(R::lit) {
+            let exact = x.to_f64().sqrt();
+            let error = (sqrt(x).to_f64() - exact).abs() / (exact * R::EPSILON.to_f64());
+            assert!(error <= 1.0, "{x}: {error} units");
+        }
+    }
+
+    #[test]
+    fn square_roots_are_wrong_by_at_most_one_unit() {
+        roots_agree::<f64>();
+        roots_agree::<f32>();
+    }
+
     #[test]
     fn complex_functions_agree_with_the_complex_modules() {
         use crate::base::complex;

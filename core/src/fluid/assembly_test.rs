@@ -347,3 +347,25 @@ fn corrected_weights_and_their_derivatives_integrate_a_constant_exactly() {
         }
     }
 }
+
+#[test]
+fn a_footprint_on_an_ellipse_is_the_parameter_wherever_the_frame_has_its_origin() {
+    // a cos t + i b sin t at t = u + iv is as far outside as v is below 0.
+    let (a, b, nodes) = (1.3_f64, 0.4_f64, 32);
+    for origin in [complex(0.0, 0.0), complex(0.3, -0.2), complex(-7.0, 4.0)] {
+        let shape = Shape::Ellipse { a, b };
+        let mut store = vec![0.0; shape.store_len().unwrap() + BoundaryRecord::<f64>::data_len(nodes, true).unwrap()];
+        let (own, mut scratch) = (shape.store_len().unwrap(), vec![0.0; shape.scratch_len().unwrap()]);
+        let (outline, _) = shape.compile(&mut store[..own], &mut scratch).unwrap();
+        let slots = Slots { store_len: own, data_at: own, ..Slots::default() };
+        let mut record = BoundaryRecord { nodes, outline, slots, origin, link: Some(0), ..Default::default() };
+        fill_nodes(&mut record, &mut store).unwrap();
+        let source = Source::of(&record, &store);
+        for (u, v) in [(0.0, 0.05), (0.7, 0.1), (2.9, 0.2), (-2.2, 0.01)] {
+            let (sin, cos) = f64::sin_cos(u);
+            let z = complex(a * cos * v.cosh() + b * cos * v.sinh(), b * sin * v.cosh() + a * sin * v.sinh());
+            let (t, height) = source.footprint(z - origin).unwrap();
+            assert!((t - u).abs() < 1e-13 && (height - v).abs() < 1e-13, "{u} {v}: {t} {height}");
+        }
+    }
+}

@@ -1,7 +1,7 @@
 //! χ₃, the interior potential of rotation for (2.6) at the nodes of a link: harmonic inside the outline, its normal derivative that of
 //! the rotation about the frame's origin. Once, at set-up.
 //!
-//! Tested by `fluid/assembly_test.rs:density_form_gives_the_potential_of_the_direct_formulation`, `tests/near_contact`.
+//! Tested by the tests at its end, `fluid/assembly_test.rs:density_form_gives_the_potential_of_the_direct_formulation`, `tests/near_contact`.
 
 use crate::base::complex::{Complex, cis, complex, dot};
 use crate::base::features;
@@ -121,5 +121,31 @@ pub(crate) fn fourier_modes<R: Real>(samples: &[R], modes: &mut [R]) {
         }
         let scale = if m == 0 || m == half { R::one() } else { R::TWO } / count;
         *pair = [sum.re * scale, sum.im * scale];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    #[test]
+    fn fourier_sums_take_the_samples_they_are_made_of() {
+        for count in [2, 8, 40] {
+            let samples: Vec<f64> = (0..count).map(|k| 0.7 + ((3 * k * k) as f64).sin()).collect();
+            let mut modes = vec![f64::NAN; count + 2];
+            fourier_modes(&samples, &mut modes);
+            for (k, sample) in samples.iter().enumerate() {
+                let s = f64::TAU * k as f64 / count as f64;
+                let terms = modes.chunks(2).enumerate().map(|(m, ab)| {
+                    let (sin, cos) = (m as f64 * s).sin_cos();
+                    ab[0] * cos + ab[1] * sin
+                });
+                let sum: f64 = terms.sum();
+                assert!((sum - sample).abs() < 1e-13, "{count}, {k}: {sum} instead of {sample}");
+            }
+        }
     }
 }

@@ -349,6 +349,18 @@ mod tests {
     }
 
     #[test]
+    fn a_table_whose_times_do_not_increase_is_refused_with_the_time_of_the_row() {
+        let rows = [[0.0, 5.0, 0.0, 0.0], [2.0, 6.0, 0.0, 0.0], [1.5, 7.0, 0.0, 0.0]];
+        let again = [[0.5, 5.0, 0.0, 0.0], [0.5, 6.0, 0.0, 0.0]];
+        for (rows, motion, time) in [(&rows[..], true, 1.5), (&rows[..], false, 1.5), (&again[..], true, 0.5)] {
+            let told = Signal::Table(rows).compile(&mut [0.0; 12], 0, 0, motion).err().unwrap();
+            assert_eq!((told.status, told.what, told.value), (Status::BadTable, "t", time));
+        }
+        // What is no motion may jump.
+        assert!(Signal::Table(&again).compile(&mut [0.0; 12], 0, 0, false).is_ok());
+    }
+
+    #[test]
     fn a_window_vanishes_with_all_derivatives_outside_its_support() {
         let w = Window { from: 1.0, to: 3.0, ramp: 1.0 };
         assert_eq!(w.evaluate(1.0), [0.0; 3]);

@@ -4,7 +4,7 @@
 //! curvatures k, k' towards the fluid, D = k k' d + k + k' and f = (k d + 2)(k' d + 2)(k k' d + 2 (k + k')), they lie
 //! c = √(d f/4)/D to both sides of a point between the curves. A ladder resolves the distance of the farther one.
 //!
-//! Tested by `tests/near_contact` (accuracy at few nodes), `tests/regrading`.
+//! Tested by the tests at its end, `tests/near_contact` (accuracy at few nodes), `tests/regrading`.
 
 use crate::base::complex::{Complex, cabs};
 use crate::base::index::Index;
@@ -159,6 +159,29 @@ pub(crate) fn place_pair<R: Real>(
                 let beta = lift(s.tangent, s.second, R::lit(TIP) * c);
                 push(lists, at, Ladder { t: s.t, beta, top: R::lit(crate::geometry::grading::TOP) });
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ladder_of_a_tip_fades_as_far_as_that_of_a_closest_point_resolves_its_scale() {
+        // The closest point resolves its own scale, or a third of what is away from it.
+        let (beta, tip) = (0.01_f64, crate::geometry::grading::TOP);
+        for (scale, distance, cover) in
+            [(0.3, 0.0, 1.0), (1.0, 0.0, 1.0), (1.25, 0.0, 0.5), (1.5, 0.0, 0.0), (4.0, 0.0, 0.0), (0.3, 0.3, 1.0)]
+                .into_iter()
+                .chain([(0.3, 1.25 / 3.0, 0.5), (0.3, 0.5, 0.0), (1.25, -0.2, 0.5), (0.3, f64::TAU / beta + 0.1, 1.0)])
+        {
+            let closest = [1.0 + distance * beta, scale * beta, TOP];
+            let mut ladders = [closest, [1.0, beta, tip]];
+            thin(&mut ladders);
+            let left = (ladders[1][2] / beta).ln() / (tip / beta).ln();
+            assert!((left - (1.0 - cover)).abs() < 1e-11, "{scale} {distance}: {left} is left");
+            assert_eq!(ladders[0], closest);
         }
     }
 }

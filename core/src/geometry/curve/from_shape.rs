@@ -1,6 +1,6 @@
 //! From a shape to its outline: validation, curve, grading.
 //!
-//! Tested by `geometry/curve/tests.rs`, `tests/bad_input`.
+//! Tested by the tests at its end, `geometry/curve/tests.rs`, `tests/bad_input`.
 
 use super::corners::Kinked;
 use super::polygon::{self, CORNER};
@@ -435,5 +435,30 @@ fn grade_corners<R: Real>(
     match crossing(positions, part_mut(boxes, 0, boxes_len(samples)), R::zero(), R::lit(FLANKS)) {
         Some(_) => Err(Error::new(Status::OutOfRange).of("radius", radius.unwrap_or(R::NAN).to_f64())),
         None => Ok(outline),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use std::vec;
+
+    #[test]
+    fn a_polygon_whose_outline_crosses_itself_is_refused_by_its_samples() {
+        // A notch from above that ends inside, or below the lower side.
+        for (end, fits) in [(0.4, true), (0.1, true), (-0.3, false), (-0.6, false)] {
+            let vertices = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, end], [0.0, 1.0]];
+            let radius = Some(0.01);
+            let shape = Shape::Polygon { vertices: &vertices, radius };
+            let (mut store, mut scratch) =
+                (vec![f64::NAN; shape.store_len().unwrap()], vec![f64::NAN; shape.scratch_len().unwrap()]);
+            let perimeter = polygon::write(turned(&vertices, false), 5, radius, &mut store).unwrap();
+            let told = grade_corners(5, perimeter, radius, &mut store, &mut scratch);
+            assert_eq!(
+                told.map(|_| ()).map_err(|e| (e.status, e.what)),
+                if fits { Ok(()) } else { Err((Status::OutOfRange, "radius")) }
+            );
+        }
     }
 }

@@ -510,3 +510,38 @@ fn tangent_is_continuous_to_rounding_where_a_side_ends() {
         }
     }
 }
+
+#[test]
+fn ellipses_have_tips_where_curvature_times_perimeter_exceeds_4_pi() {
+    for aspect in [1.0, 1.2, 1.4, 1.5, 1.6, 1.8, 3.0, 100.0] {
+        for (a, b) in [(aspect, 1.0), (0.2, 0.2 * aspect)] {
+            let ellipse = compile(Shape::Ellipse { a, b });
+            let mut tips = Vec::new();
+            ellipse.outline.each_tip(&ellipse.store, |t| tips.push(t));
+            let step = f64::TAU / 4096.0;
+            let perimeter: f64 = (0..4096)
+                .map(|k| {
+                    let (sin, cos) = (step * f64::from(k)).sin_cos();
+                    (a * sin).hypot(b * cos) * step
+                })
+                .sum();
+            let (long, short) = (f64::max(a, b), f64::min(a, b));
+            let expected = if long / (short * short) * perimeter > 2.0 * f64::TAU { 2 } else { 0 };
+            assert_eq!(tips.len(), expected, "{a} {b}");
+            // They are the ends of the longer axis.
+            for t in tips {
+                assert!((crate::base::complex::cabs(ellipse.view().curve.jet_real(t)[0]) - long).abs() < 1e-14 * long);
+            }
+        }
+    }
+}
+
+#[test]
+fn curves_far_away_enclose_what_they_enclose() {
+    for distance in [0.0, 1e3, 3e7] {
+        let points: Vec<_> = blob(24).into_iter().map(|[x, y]| [x + distance, y - distance]).collect();
+        let area = |points: &[[f64; 2]]| compile(Shape::curve(points)).view().properties().unwrap().area;
+        let (far, near) = (area(&points), area(&blob(24)));
+        close(far / near, 1.0, 1e-15 * (1.0 + 10.0 * distance), "area");
+    }
+}

@@ -301,6 +301,18 @@ mod tests {
     }
 
     #[test]
+    fn a_sample_belongs_to_the_point_at_or_before_it() {
+        for n in [3, 8, 50] {
+            let mut knots = vec![f64::NAN; n + 2 * EXTRA];
+            write_knots(|k| crate::base::complex::cis(f64::TAU * k as f64 / n as f64), n, &mut knots);
+            // Not at the knots themselves, where rounding decides.
+            for i in (0..samples(n)).filter(|i| i % SAMPLES != 0) {
+                assert_eq!(point_before(&knots, n, i), i / SAMPLES, "{n} {i}");
+            }
+        }
+    }
+
+    #[test]
     fn elimination_exchanges_rows_where_it_must() {
         // Rows that are those of a dominant matrix, turned round: without exchanges pivots are small or 0.
         for n in [2, 3, 8] {

@@ -216,3 +216,28 @@ fn the_tightest_tolerance_ends_at_rounding() {
     std::println!("tightest {error:e} {:?}", adams.counters());
     assert!(error < 3e-13 && adams.counters().evaluations < 2000, "{error:e}");
 }
+
+#[test]
+fn steps_and_orders_of_adams_are_the_same_in_every_unit_of_time() {
+    // Units that are powers of 2 round nothing otherwise: every state is the same to the last digit. Stops shorten some steps.
+    let steps = |unit: f64| {
+        let mut system = ode(4, |t: f64, y: &[f64], d: &mut [f64]| {
+            kepler(t, y, d)?;
+            d.iter_mut().for_each(|d| *d /= unit);
+            Ok(())
+        });
+        let (mut adams, mut memory) = started(1e-8, 1e-8, 0.0, &pericentre(0.6));
+        let mut seen = Vec::new();
+        for stop in [1.0, 1.001, 3.0, 3.01, 20.0] {
+            while adams.time() != stop * unit {
+                adams.step(&mut system, stop * unit, &mut memory).unwrap();
+                seen.push((adams.time() / unit, adams.last_order(), adams.state(&memory).to_vec()));
+            }
+        }
+        (seen, adams.counters().rejected)
+    };
+    let one = steps(1.0);
+    for unit in [2f64.powi(-30), 2f64.powi(30)] {
+        assert!(steps(unit) == one, "{unit:e}");
+    }
+}
