@@ -349,7 +349,7 @@ impl<'a, R> Shape<'a, R> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Corners<'a> {
     /// Where the points show a kink (notice `CornersFound`): a turn of 30° to 175° that is four times its neighbours', as is its curvature,
-    /// on flanks of at least three points each or at a blunt end. Outlines of less than eight points have none.
+    /// with at least three points between it and the next corner, or none at a blunt end. Outlines of less than eight points have none.
     #[default]
     Auto,
     /// Nowhere: the curve is smooth.

@@ -33,8 +33,8 @@ const STRAIGHT: f64 = 5e-3;
 pub(super) struct Kinked<'a, R> {
     points: &'a [[R; 2]],
     corners: Corners<'a>,
-    /// Number of points before repeated ones were dropped.
-    given: usize,
+    /// The same with repeated ones.
+    given: &'a [[R; 2]],
     size: R,
 }
 
@@ -62,13 +62,13 @@ impl<'a, R: Real> Kinked<'a, R> {
         let points = distinct(given);
         let p = |k: usize| points.get(k).map_or(Complex::default(), |[x, y]| complex(*x, *y));
         let size = (0..points.len()).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0))));
-        Kinked { points, corners, given: given.len(), size }
+        Kinked { points, corners, given, size }
     }
 
     /// Corners given are points of the curve. Errors: `OutOfRange` with the number.
     pub(super) fn check(&self) -> Result<()> {
         let Corners::At(given) = self.corners else { return Ok(()) };
-        match given.iter().find(|k| **k >= self.given) {
+        match given.iter().find(|k| **k >= self.given.len()) {
             Some(k) => Err(Error::new(Status::OutOfRange).of("corner", *k as f64)),
             None => Ok(()),
         }
@@ -88,6 +88,18 @@ impl<'a, R: Real> Kinked<'a, R> {
         let (before, after) =
             (self.point(i) - self.point(self.along(i, -1)), self.point(self.along(i, 1)) - self.point(i));
         (dot(before, after), cross(before, after))
+    }
+
+    /// The point that a given one is or, if it was dropped, repeats: the first or the last one.
+    fn own(&self, k: usize) -> usize {
+        let (first, last) = (0, self.points.len().saturating_sub(1));
+        match self.given.get(k) {
+            Some([x, y]) if k > last => {
+                let far = |i: usize| cabs(complex(*x, *y) - self.point(i));
+                if far(last) < far(first) { last } else { first }
+            }
+            _ => k,
+        }
     }
 
     /// The amount of the turn at a point, and over the mean of its segments.
@@ -132,8 +144,7 @@ impl<'a, R: Real> Kinked<'a, R> {
     pub(super) fn is_corner(&self, i: usize) -> bool {
         match self.corners {
             Corners::None => false,
-            // A repeated point is the first one.
-            Corners::At(corners) => corners.iter().any(|k| *k == i || (i == 0 && *k >= self.points.len())),
+            Corners::At(corners) => corners.iter().any(|k| self.own(*k) == i),
             Corners::Auto => {
                 let other = |k: isize| self.stands_out(self.along(i, k));
                 self.points.len() >= 8
@@ -170,8 +181,10 @@ impl<'a, R: Real> Kinked<'a, R> {
         let wedge = |[a, b]: [Complex<R>; 2]| cross(a, b).atan2(dot(a, b));
         let chords = wedge(flanks.map(|f| f.straight().slope));
         let tangents = wedge(flanks.map(|f| f.slope));
-        // Parabolas that close the wedge, or cross.
-        if (if chords < R::zero() { -tangents } else { tangents }) < chords.abs() * R::HALF {
+        // Parabolas that close a wedge, or cross.
+        if chords.abs() < R::PI * R::HALF
+            && (if chords < R::zero() { -tangents } else { tangents }) < chords.abs() * R::HALF
+        {
             flanks = flanks.map(Flank::straight);
         }
         let shortest = flanks.iter().fold(R::MAX, |l, f| l.min(f.length));
@@ -329,6 +342,21 @@ mod tests {
     }
 
     #[test]
+    fn a_corner_that_is_none_leaves_a_smooth_curve_where_it_was() {
+        // The flanks' parabolas are off the circle by (h/R)³/16 at most, between points by themselves.
+        for n in [16_usize, 40, 100] {
+            let h = TAU / n as f64;
+            let circle: Points = (0..n).map(|k| h * k as f64).map(|t| [t.cos(), t.sin()]).collect();
+            for at in [0, 3, n - 1] {
+                let numbers = [at];
+                let mut off = 0.0_f64;
+                Kinked::new(&circle, Corners::At(&numbers)).each(|_, p| off = off.max((cabs(p) - 1.0).abs()));
+                assert!(off < h * h * h / 16.0, "{n} {at}: {off:e} of {:e}", h * h * h);
+            }
+        }
+    }
+
+    #[test]
     fn a_rounded_corner_passes_through_its_neighbours_and_is_cut_by_its_rounding() {
         let points = sides(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], 4);
         let kinked = Kinked::new(&points, Corners::At(&[0]));
@@ -350,6 +378,12 @@ mod tests {
         for k in 0..all.len() {
             let ratio = chord((k + 1) % all.len()) / chord(k);
             assert!((0.3..3.4).contains(&ratio), "{k}: {ratio}");
+        }
+        // A last point that is repeated, whichever it repeats, is the corner that it repeats.
+        for (corner, repeated) in [(0, points[0]), (15, points[15])] {
+            let longer: Points = points.iter().copied().chain([repeated]).collect();
+            let all: Vec<usize> = Kinked::new(&longer, Corners::At(&[16])).all().collect();
+            assert_eq!(all, [corner]);
         }
         let wrong = Kinked::new(&points, Corners::At(&[16])).check().unwrap_err();
         assert_eq!((wrong.status, wrong.what, wrong.value), (Status::OutOfRange, "corner", 16.0));

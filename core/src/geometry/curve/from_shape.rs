@@ -220,7 +220,8 @@ impl<R: Real> Shape<'_, R> {
     /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
     /// of the shortest side; from 32 roundings of the perimeter up to where two arcs no longer fit on a side.
     /// Clockwise corners or points are turned round, with the notice `OutlineReversed` in place of `Ok`; a repeated last point is dropped,
-    /// with the notice `PointRepeated`; kinks of a curve's points become corners, with `CornersFound`.
+    /// with the notice `PointRepeated`; kinks of a curve's points become corners, with `CornersFound`
+    /// before either.
     /// Errors name the measure, corner ("vertex") or point: `NotFinite`, `BadShape`, `OutOfRange`,
     /// `SelfIntersection`; `MemoryTooSmall`.
     ///
