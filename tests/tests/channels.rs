@@ -1,8 +1,9 @@
 //! Commands that jump: what is integrated and what is told after [`nekton::Sim::set_channel`] belong to the new command alone.
 
-use nekton::scene::{Drive, Joint, JointKind, Link, Mass, Scene, Signal};
-use nekton::{Method, Sim};
+use nekton::scene::{Body, Drive, Joint, JointKind, Link, Mass, Root, Scene, Shape, Signal};
+use nekton::{Method, ModelBuf, Sim, SimBuf};
 use nekton_tests::*;
+use std::sync::Arc;
 
 const MASSES: [f64; 2] = [0.7, 1.9];
 const START: [f64; 2] = [2.0, 0.1];
@@ -406,5 +407,48 @@ fn steps_far_too_long_are_told_with_and_without_commands() {
         }
         println!("{command}: {told} of 20, {:?}", sim.time_error());
         assert!(told >= 5 && sim.time_error().length_sum > 0.2, "{command}: {told}, {:?}", sim.time_error());
+    }
+}
+
+/// A body whose position follows two channels.
+fn led(method: Method<f64>) -> SimBuf<f64> {
+    let links = [link(Shape::Ellipse { a: 0.5, b: 0.3 }, 1.0, 16)];
+    let root = Root::Prescribed([Signal::Channel, Signal::Channel, Signal::Constant(0.0)]);
+    let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root, links: &links }];
+    SimBuf::new(Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap()), method).unwrap()
+}
+
+#[test]
+fn every_channel_follows_its_own_piece_also_if_another_was_given_the_same() {
+    let ends = |to: f64| ([0.0; 4], [1.0, to, 0.0, 0.0]);
+    for [x, y] in [[0.3, 0.3], [0.3, -0.2], [0.0, 0.4], [0.4, 0.0]] {
+        let mut sim = led(Method::Rk4 { step: 0.25 });
+        let mut sim = sim.view();
+        for (channel, to) in [x, y].into_iter().enumerate() {
+            let (from, to) = ends(to);
+            sim.set_channel(channel, from, to).unwrap();
+        }
+        sim.advance(1.0).unwrap();
+        let [found_x, found_y] = [0, 1].map(|k| sim.positions()[k]);
+        assert!((found_x - x).abs() + (found_y - y).abs() < 1e-13, "{found_x} {found_y}");
+    }
+}
+
+#[test]
+fn every_step_counts_once() {
+    let step = 0.125;
+    let adams = Method::Adams { relative: 1e-6, absolute: 1e-6, max_step: 1.0, first_step: 0.0 };
+    for method in [Method::Rk4 { step }, Method::Abm4 { step }, Method::Gauss6 { step }, adams] {
+        let mut sim = led(method);
+        let mut sim = sim.view();
+        for k in 1..=5 {
+            sim.step().unwrap();
+            assert_eq!(sim.counters().steps, k, "{method:?}");
+        }
+        // A whole step and a shortened one.
+        if method != adams {
+            sim.advance(6.5 * step).unwrap();
+            assert_eq!(sim.counters().steps, 7, "{method:?}");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Saving and loading: a simulation goes on from its bytes as if nothing had been, and bytes that are not its own change nothing.
 
 use nekton::scalar::Real;
-use nekton::scene::{Drive, Harmonic, Joint, JointKind, Link, Repulsion, Root, Scene, Shape, Signal, Window};
+use nekton::scene::{Body, Drive, Harmonic, Joint, JointKind, Link, Repulsion, Root, Scene, Shape, Signal, Window};
 use nekton::{Error, Method, ModelBuf, Result, Sim, SimBuf, Status};
 use nekton_tests::*;
 use std::sync::Arc;
@@ -353,4 +353,40 @@ fn equal_scenes_have_equal_fingerprints_and_others_have_not() {
     assert_eq!(of(Case::Channels, 0.3), of(Case::Channels, 0.3));
     assert_ne!(of(Case::Channels, 0.3), of(Case::Channels, 0.300_000_000_000_000_04));
     assert_ne!(of(Case::Channels, 0.3), model::<f32>(Case::Channels, 0.3).view().fingerprint());
+}
+
+#[test]
+fn what_is_told_on_arriving_where_a_motion_ends_is_told_after_loading_too() {
+    // At its last row a table leaves its acceleration for rest.
+    let rows = [[0.0, 0.0, 0.0, 0.0], [1.0, 0.4, 0.0, -0.7]];
+    let still = Signal::Constant(0.0);
+    let links = [link(Shape::Ellipse { a: 0.5, b: 0.3 }, 1.0, 16)];
+    let root = Root::Prescribed([Signal::Table(&rows), still, still]);
+    let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root, links: &links }];
+    let model = Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap());
+    let told = |sim: &mut SimBuf<f64>| {
+        let mut out = [f64::NAN; 3];
+        sim.view().accelerations(&mut out).unwrap();
+        out[0]
+    };
+    let step = 0.125;
+    for method in [Method::Rk4 { step }, Method::Gauss6 { step }] {
+        let new = || SimBuf::new(model.clone(), method).unwrap();
+        let (mut arrived, mut put) = (new(), new());
+        arrived.view().advance(1.0).unwrap();
+        let state = arrived.view().state().to_vec();
+        put.view().set_state(1.0, &state).unwrap();
+        assert!((told(&mut arrived) + 0.7).abs() < 1e-12 && told(&mut put).abs() < 1e-12);
+        let saved = [arrived.save().unwrap(), put.save().unwrap()];
+        for (from, bytes) in [&mut arrived, &mut put].into_iter().zip(&saved) {
+            let expected = told(from);
+            let mut other = new();
+            other.load(bytes).unwrap();
+            assert_eq!(told(&mut other), expected);
+        }
+        // Nor does what the other one was before matter.
+        arrived.load(&saved[1]).unwrap();
+        put.load(&saved[0]).unwrap();
+        assert!((told(&mut put) + 0.7).abs() < 1e-12 && told(&mut arrived).abs() < 1e-12);
+    }
 }

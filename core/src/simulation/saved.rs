@@ -391,11 +391,7 @@ impl<R: Real> Sim<'_, R> {
 
 #[cfg(test)]
 mod tests {
-    extern crate std;
     use super::*;
-    use crate::scene::{Body, Link, Mass, Root, Scene, Shape, Signal};
-    use crate::setup::owned::{ModelBuf, SimBuf};
-    use std::sync::Arc;
 
     #[test]
     fn a_motion_that_was_missed_is_saved_if_its_coordinate_is_one_of_the_model() {
@@ -405,48 +401,6 @@ mod tests {
                 let survey = Survey::of(|survey| each_of_missed(&mut missed, survey, coordinates));
                 assert_eq!(survey.refused.is_none(), coordinate < coordinates, "{coordinate} of {coordinates}");
             }
-        }
-    }
-
-    #[test]
-    fn what_is_told_on_arriving_where_a_motion_ends_is_told_after_loading_too() {
-        // At its last row a table leaves its acceleration for rest.
-        let rows = [[0.0, 0.0, 0.0, 0.0], [1.0, 0.4, 0.0, -0.7]];
-        let still = Signal::Constant(0.0);
-        let links = [Link {
-            shape: Shape::Ellipse { a: 0.5, b: 0.3 },
-            mass: Mass::Density(1.0),
-            nodes: 16,
-            circulation: 0.0,
-            joint: None,
-        }];
-        let root = Root::Prescribed([Signal::Table(&rows), still, still]);
-        let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root, links: &links }];
-        let model = Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap());
-        let told = |sim: &mut SimBuf<f64>| {
-            let mut out = [f64::NAN; 3];
-            sim.view().accelerations(&mut out).unwrap();
-            out[0]
-        };
-        let step = 0.125;
-        for method in [Method::Rk4 { step }, Method::Gauss6 { step }] {
-            let new = || SimBuf::new(model.clone(), method).unwrap();
-            let (mut arrived, mut put) = (new(), new());
-            arrived.view().advance(1.0).unwrap();
-            let state = arrived.view().state().to_vec();
-            put.view().set_state(1.0, &state).unwrap();
-            assert!((told(&mut arrived) + 0.7).abs() < 1e-12 && told(&mut put).abs() < 1e-12);
-            let saved = [arrived.save().unwrap(), put.save().unwrap()];
-            for (from, bytes) in [&mut arrived, &mut put].into_iter().zip(&saved) {
-                let expected = told(from);
-                let mut other = new();
-                other.load(bytes).unwrap();
-                assert_eq!(told(&mut other), expected);
-            }
-            // Nor does what the other one was before matter.
-            arrived.load(&saved[1]).unwrap();
-            put.load(&saved[0]).unwrap();
-            assert!((told(&mut put) + 0.7).abs() < 1e-12 && told(&mut arrived).abs() < 1e-12);
         }
     }
 }

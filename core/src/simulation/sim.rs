@@ -1,7 +1,7 @@
 //! A simulation: the state of a model's motion, its integrator, and the stepping. One simulation per thread; any
 //! number share one model. Nothing is allocated.
 //!
-//! Tested by the tests at its end, `tests/driving`, `tests/allocation`.
+//! Tested by `tests/driving`, `tests/channels`, `tests/allocation`.
 
 use crate::base::memory::{at, copy, copy_some, part, part_mut, put};
 use crate::base::scalar::Real;
@@ -391,65 +391,6 @@ impl<'a, R: Real> Sim<'a, R> {
         let joints = self.model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3);
         for ((u, du), (k, _)) in u.iter_mut().zip(du.iter_mut()).zip(joints) {
             (*u, *du) = (at(self.state.joints, 2 * k), at(self.state.joints, 2 * k + 1));
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    extern crate std;
-    use crate::scene::{Body, Link, Mass, Root, Scene, Shape, Signal};
-    use crate::setup::owned::{ModelBuf, SimBuf};
-    use crate::simulation::state::Method;
-    use std::sync::Arc;
-
-    /// A body whose position follows two channels.
-    fn led(method: Method<f64>) -> SimBuf<f64> {
-        let links = [Link {
-            shape: Shape::Ellipse { a: 0.5, b: 0.3 },
-            mass: Mass::Density(1.0),
-            nodes: 16,
-            circulation: 0.0,
-            joint: None,
-        }];
-        let root = Root::Prescribed([Signal::Channel, Signal::Channel, Signal::Constant(0.0)]);
-        let bodies = [Body { pose: [0.0; 3], velocity: [0.0; 3], root, links: &links }];
-        SimBuf::new(Arc::new(ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap()), method)
-            .unwrap()
-    }
-
-    #[test]
-    fn every_channel_follows_its_own_piece_also_if_another_was_given_the_same() {
-        let ends = |to: f64| ([0.0; 4], [1.0, to, 0.0, 0.0]);
-        for [x, y] in [[0.3, 0.3], [0.3, -0.2], [0.0, 0.4], [0.4, 0.0]] {
-            let mut sim = led(Method::Rk4 { step: 0.25 });
-            let mut sim = sim.view();
-            for (channel, to) in [x, y].into_iter().enumerate() {
-                let (from, to) = ends(to);
-                sim.set_channel(channel, from, to).unwrap();
-            }
-            sim.advance(1.0).unwrap();
-            let [found_x, found_y] = [0, 1].map(|k| sim.positions()[k]);
-            assert!((found_x - x).abs() + (found_y - y).abs() < 1e-13, "{found_x} {found_y}");
-        }
-    }
-
-    #[test]
-    fn every_step_counts_once() {
-        let step = 0.125;
-        let adams = Method::Adams { relative: 1e-6, absolute: 1e-6, max_step: 1.0, first_step: 0.0 };
-        for method in [Method::Rk4 { step }, Method::Abm4 { step }, Method::Gauss6 { step }, adams] {
-            let mut sim = led(method);
-            let mut sim = sim.view();
-            for k in 1..=5 {
-                sim.step().unwrap();
-                assert_eq!(sim.counters().steps, k, "{method:?}");
-            }
-            // A whole step and a shortened one.
-            if method != adams {
-                sim.advance(6.5 * step).unwrap();
-                assert_eq!(sim.counters().steps, 7, "{method:?}");
-            }
         }
     }
 }
