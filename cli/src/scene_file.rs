@@ -25,8 +25,24 @@ pub use run::{Integrator, RunDef};
 use run::{RUN, read_run};
 use shape::{ShapeDef, nodes};
 
-/// Corners that a notice names, at most.
+/// Points that a notice names, at most.
 const MOST_NAMED: usize = 12;
+
+/// A curve whose points turn by so much that they may be corners, or too few.
+fn coarse(whose: &str, shape: &ShapeDef) -> Option<String> {
+    let (points, turn) = shape.coarse()?;
+    Some(format!(
+        "outline of {whose}: it turns by up to {turn:.0}° at its points {} (counted from 0), which are no corners: name them in `corners` if \
+         they are, else give more points there; no bound sees what the points do not show",
+        listed(&points)
+    ))
+}
+
+fn listed(points: &[usize]) -> String {
+    let more = points.len().saturating_sub(MOST_NAMED);
+    let named: Vec<String> = points.iter().take(MOST_NAMED).map(usize::to_string).collect();
+    named.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
 
 /// A scene with its own data and the lines on which everything stands.
 #[derive(Clone, Debug)]
@@ -91,15 +107,21 @@ impl SceneFile {
 
     /// What the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
-        self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
+        let signals = self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices);
+        self.shapes().filter_map(|(whose, shape)| coarse(&whose, shape)).chain(signals).collect()
+    }
+
+    /// Every outline and whose it is.
+    fn shapes(&self) -> impl Iterator<Item = (String, &ShapeDef)> {
+        let links = self.labels().into_iter().zip(self.bodies.iter().flat_map(|b| &b.links).map(|l| &l.shape));
+        let tank = self.tank.iter().map(|t| ("tank".to_owned(), &t.shape));
+        let walls = self.obstacles.iter().enumerate().map(|(k, o)| (format!("obstacle {}", k + 1), &o.shape));
+        links.chain(tank).chain(walls)
     }
 
     /// Outlines whose points are not in the scene file: whose they are, and what was read.
     pub fn outlines(&self) -> Vec<(String, String)> {
-        let links = self.labels().into_iter().zip(self.bodies.iter().flat_map(|b| &b.links).map(|l| &l.shape));
-        let tank = self.tank.iter().map(|t| ("tank".to_owned(), &t.shape));
-        let walls = self.obstacles.iter().enumerate().map(|(k, o)| (format!("obstacle {}", k + 1), &o.shape));
-        links.chain(tank).chain(walls).filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
+        self.shapes().filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
     }
 
     /// Of every link in the user's order, the area of the polygon through the points of its curve, if it is one.
@@ -204,12 +226,11 @@ impl SceneFile {
         };
         let mut all = Vec::new();
         if let Some(shape) = shape {
-            shape.core().each_corner(|k| all.push(k.to_string()));
+            shape.core().each_corner(|k| all.push(k));
         }
-        let more = if all.len() > MOST_NAMED { format!(" and {} more", all.len() - MOST_NAMED) } else { String::new() };
-        let named = all.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
         format!(
-            "kinks at its points {named}{more} (counted from 0) were taken as corners; `corners` in its shape gives others, or \"none\""
+            "kinks at its points {} (counted from 0) were taken as corners; `corners` in its shape gives others, or \"none\"",
+            listed(&all)
         )
     }
 

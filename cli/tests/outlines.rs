@@ -269,3 +269,31 @@ fn what_has_no_end_is_no_outline_and_no_table() {
     let told = "/dev/zero: cannot be read: it has more than the 64 MiB that are read of such a file";
     assert_eq!((done.code, done.err.trim()), (Some(2), told));
 }
+
+#[test]
+fn points_that_turn_by_far_and_are_no_corners_are_noticed() {
+    // A square by its corners and the middles of its sides is a smooth curve, 5 % off; with its corners named it is a square.
+    let square = "[[1,1],[0,1],[-1,1],[-1,0],[-1,-1],[0,-1],[1,-1],[1,0]]";
+    let told = |shape: &str| {
+        let scene = changed(HEAD, &format!("shape = {shape}")).replace("nodes = 32", "nodes = \"auto\"");
+        let done = Place::new(&scene).nekton(&["plan", "scene.toml"]);
+        assert_eq!(done.code, Some(0), "{}", done.err);
+        done.out
+    };
+    let notice =
+        "outline of fish.head: it turns by up to 90° at its points 0, 2, 4, 6 (counted from 0), which are no corners";
+    let square = square.replace("1", "0.4");
+    assert!(told(&format!("{{ curve = {square} }}")).contains(notice));
+    assert!(!told(&format!("{{ curve = {square}, corners = [6, 0, 2, 4] }}")).contains("which are no corners"));
+    // All but one of them named: the last one is.
+    let three = told(&format!("{{ curve = {square}, corners = [0, 2, 4] }}"));
+    assert!(three.contains("by up to 90° at its points 6 (counted"), "{three}");
+    // Neither a round outline of few points, nor a section, nor a path with its corners.
+    let ring = |n: usize| -> String {
+        let points = (0..n).map(|k| (std::f64::consts::TAU * k as f64 / n as f64).sin_cos());
+        points.map(|(s, c)| format!("[{},{}],", 0.4 * c, 0.4 * s)).collect()
+    };
+    for shape in [format!("{{ curve = [{}] }}", ring(8)), "{ naca = \"0006\", chord = 1.0 }".to_owned()] {
+        assert!(!told(&shape).contains("which are no corners"), "{shape}");
+    }
+}

@@ -6,6 +6,11 @@ use super::outline::Outline;
 use super::outline::naca::{Naca, POINTS, Tail};
 use super::reader::{Item, Outcome, Section};
 
+/// A turn in degrees of a point of a smooth curve that is noticed.
+const COARSE: f64 = 60.0;
+/// From here on it is a cusp.
+const CUSP: f64 = 175.0;
+
 /// A shape with its own points.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeDef {
@@ -42,7 +47,9 @@ impl CornersDef {
                 Err(k.problem(format!("is the number of a corner, but there are {points} points, counted from 0: {n}")))
             }
         };
-        item.list()?.iter().map(one).collect::<Outcome<_>>().map(CornersDef::At)
+        let mut all = item.list()?.iter().map(one).collect::<Outcome<Vec<_>>>()?;
+        all.sort_unstable();
+        Ok(CornersDef::At(all))
     }
 }
 
@@ -156,6 +163,23 @@ impl ShapeDef {
             ShapeDef::Curve(outline, _) => Some(outline.polygon_area()),
             _ => None,
         }
+    }
+
+    /// The points of a curve at which it turns by more than smooth ones should, and is no corner; with the largest turn, in degrees.
+    pub fn coarse(&self) -> Option<(Vec<usize>, f64)> {
+        let ShapeDef::Curve(outline, _) = self else { return None };
+        let (points, n) = (&outline.points, outline.points.len());
+        let mut corners = vec![false; n];
+        self.core().each_corner(|k| corners[k] = true);
+        let turn = |k: usize| {
+            let [a, b, c] = [k + n - 1, k, k + 1].map(|i| points[i % n]);
+            let [u, v] = [[b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]];
+            (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1]).to_degrees()
+        };
+        let turns = (0..n).filter(|k| !corners[*k]).map(|k| (k, turn(k)));
+        let coarse: Vec<_> = turns.filter(|(_, turn)| (COARSE..CUSP).contains(turn)).collect();
+        let most = coarse.iter().fold(0.0, |most: f64, (_, turn)| most.max(*turn));
+        (!coarse.is_empty()).then(|| (coarse.into_iter().map(|(k, _)| k).collect(), most))
     }
 
     /// What the user is told of points that the scene file does not show.

@@ -35,6 +35,8 @@ pub(super) struct Kinked<'a, R> {
     corners: Corners<'a>,
     /// The same with repeated ones.
     given: &'a [[R; 2]],
+    /// Corners that are given increase: they are found by bisection.
+    sorted: bool,
     size: R,
 }
 
@@ -62,7 +64,8 @@ impl<'a, R: Real> Kinked<'a, R> {
         let points = distinct(given);
         let p = |k: usize| points.get(k).map_or(Complex::default(), |[x, y]| complex(*x, *y));
         let size = (0..points.len()).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0))));
-        Kinked { points, corners, given, size }
+        let sorted = matches!(corners, Corners::At(list) if list.is_sorted());
+        Kinked { points, corners, given, sorted, size }
     }
 
     /// Corners given are points of the curve. Errors: `OutOfRange` with the number.
@@ -144,7 +147,11 @@ impl<'a, R: Real> Kinked<'a, R> {
     pub(super) fn is_corner(&self, i: usize) -> bool {
         match self.corners {
             Corners::None => false,
-            Corners::At(corners) => corners.iter().any(|k| self.own(*k) == i),
+            Corners::At(list) => {
+                let n = self.points.len();
+                let listed = if self.sorted { list.binary_search(&i).is_ok() } else { list.contains(&i) };
+                listed || ((i == 0 || i + 1 == n) && list.iter().any(|k| *k >= n && self.own(*k) == i))
+            }
             Corners::Auto => {
                 let other = |k: isize| self.stands_out(self.along(i, k));
                 self.points.len() >= 8

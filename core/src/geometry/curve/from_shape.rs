@@ -155,7 +155,7 @@ impl<R: Real> Shape<'_, R> {
     }
 
     /// Visits the numbers of the points at which a curve has corners, given or found; nothing for other shapes. O(points), times the number
-    /// of corners if they are given.
+    /// of corners if they are given and do not increase.
     pub fn each_corner(&self, visit: impl FnMut(usize)) {
         if let Shape::Curve { points, corners } = *self {
             Kinked::new(points, corners).all().for_each(visit);
