@@ -158,7 +158,7 @@ enum {
 /** Set while running by nekton_sim_set_channel; 0 until then. */
 #define NEKTON_SIGNAL_CHANNEL 3
 
-/** Where the points of a curve show a kink: a turn of 30 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND). */
+/** Where the points of a curve show a kink: a turn of 29 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND). */
 #define NEKTON_CORNERS_AUTO 0
 
 /** Nowhere: the curve is smooth. */

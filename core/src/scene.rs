@@ -348,7 +348,7 @@ impl<'a, R> Shape<'a, R> {
 /// size (single precision: 6·10⁻⁵), at most 1/64 of the segments beside it: it is cut off by 1.4 r cos(turn/2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Corners<'a> {
-    /// Where the points show a kink (notice `CornersFound`): a turn of 30° to 175° that is four times its neighbours', as is its curvature,
+    /// Where the points show a kink (notice `CornersFound`): a turn of 29° to 175° that is four times its neighbours', as is its curvature,
     /// with at least three points between it and the next corner, or none at a blunt end. Outlines of less than eight points have none.
     #[default]
     Auto,

@@ -2,14 +2,12 @@
 
 use nekton::scene::{Corners, Shape};
 
-use super::outline::Outline;
 use super::outline::naca::{Naca, POINTS, Tail};
+use super::outline::{CUSP, Outline, turn};
 use super::reader::{Item, Outcome, Section};
 
 /// A turn in degrees of a point of a smooth curve that is noticed.
 const COARSE: f64 = 60.0;
-/// From here on it is a cusp.
-const CUSP: f64 = 175.0;
 
 /// A shape with its own points.
 #[derive(Clone, Debug, PartialEq)]
@@ -171,12 +169,7 @@ impl ShapeDef {
         let (points, n) = (&outline.points, outline.points.len());
         let mut corners = vec![false; n];
         self.core().each_corner(|k| corners[k] = true);
-        let turn = |k: usize| {
-            let [a, b, c] = [k + n - 1, k, k + 1].map(|i| points[i % n]);
-            let [u, v] = [[b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]];
-            (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1]).to_degrees()
-        };
-        let turns = (0..n).filter(|k| !corners[*k]).map(|k| (k, turn(k)));
+        let turns = (0..n).filter(|k| !corners[*k]).map(|k| (k, turn(points, k)));
         let coarse: Vec<_> = turns.filter(|(_, turn)| (COARSE..CUSP).contains(turn)).collect();
         let most = coarse.iter().fold(0.0, |most: f64, (_, turn)| most.max(*turn));
         (!coarse.is_empty()).then(|| (coarse.into_iter().map(|(k, _)| k).collect(), most))

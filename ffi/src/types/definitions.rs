@@ -100,7 +100,7 @@ pub struct SignalDef<R> {
     pub row_count: usize,
 }
 
-/// Where the points of a curve show a kink: a turn of 30 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND).
+/// Where the points of a curve show a kink: a turn of 29 to 175 degrees that stands out (notice NEKTON_N_CORNERS_FOUND).
 pub const NEKTON_CORNERS_AUTO: i32 = 0;
 /// Nowhere: the curve is smooth.
 pub const NEKTON_CORNERS_NONE: i32 = 1;

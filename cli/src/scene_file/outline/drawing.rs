@@ -8,13 +8,11 @@ use roxmltree::{Document, Node, ParsingOptions};
 
 use super::cells::short;
 use super::path::{self, Line};
-use super::points::{Outline, twice_area};
+use super::points::{CUSP, Outline, turn, twice_area};
 use crate::scene_file::reader::{Outcome, Problem, suggest};
 
 /// Elements of a picture, at most.
 const ELEMENTS: u32 = 1_000_000;
-/// A turn in degrees from which on a corner is a cusp.
-const CUSP: f64 = 175.0;
 /// Elements that draw.
 const SHAPES: &[&str] = &[
     "path",
@@ -99,14 +97,7 @@ pub fn read(path: &Path, text: &str, id: Option<&str>) -> Outcome<(Outline, Stri
     ];
     let kind: Vec<String> = kind.into_iter().flatten().collect();
     let kind = format!(" ({})", kind.join(", "));
-    // A cusp is sharper as a smooth curve.
-    let n = points.len();
-    let turn = |k: &usize| {
-        let [a, b, c] = [k + n - 1, *k, k + 1].map(|i| points[i % n]);
-        let [u, v] = [[b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]];
-        (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1])
-    };
-    let corners = corners.into_iter().filter(|k| turn(k).to_degrees() < CUSP).collect();
+    let corners = corners.into_iter().filter(|k| turn(&points, *k) < CUSP).collect();
     Ok((Outline { corners: Some(corners), ..Outline::of(points) }, kind))
 }
 

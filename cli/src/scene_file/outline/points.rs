@@ -3,6 +3,17 @@
 /// Points of a file, at most.
 pub const MOST: usize = 100_000;
 
+/// A turn in degrees from which on a corner is a cusp, which the core rounds better as a smooth curve.
+pub const CUSP: f64 = 175.0;
+
+/// The amount in degrees by which a closed line turns at point `k`.
+pub fn turn(points: &[[f64; 2]], k: usize) -> f64 {
+    let n = points.len();
+    let [a, b, c] = [k + n - 1, k, k + 1].map(|i| points[i % n]);
+    let [u, v] = [[b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]];
+    (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1]).to_degrees()
+}
+
 /// Points along a closed line, and what the user is told of them if they did not write them into the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {

@@ -16,8 +16,8 @@ use crate::scene::Corners;
 const ROUNDING: f64 = 2e-6;
 /// r is at most this part of a segment beside the corner.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// A turn below this one is never taken for a corner.
-const LEAST_TURN: f64 = core::f64::consts::PI / 6.0;
+/// A turn below this one is never taken for a corner. No regular polygon turns by just this.
+const LEAST_TURN: f64 = core::f64::consts::PI * (29.0 / 180.0);
 /// Uneven points of a smooth curve do not turn by more than this.
 const CLEAR_TURN: f64 = core::f64::consts::PI / 3.0;
 /// A turn above this one is a cusp: the smooth curve through its points rounds it better.
@@ -115,9 +115,9 @@ impl<'a, R: Real> Kinked<'a, R> {
 
     /// The turn stands out on both sides, apart from that of a point next to it which may be the other corner of a blunt end.
     fn stands_out(&self, i: usize) -> bool {
-        // Most points turn little: no need for the angle.
+        // Most points turn by less, tan 29° = 0.554: no need for the angle.
         let (c, s) = self.turned(i);
-        if s.abs() <= c * R::lit(0.57) {
+        if s.abs() <= c * R::lit(0.55) {
             return false;
         }
         let (turn, mean) = self.turn(i);
@@ -340,6 +340,15 @@ mod tests {
         }
         // Their corners alone do not tell.
         assert_eq!(found(&square), []);
+        // All corners of a regular polygon, or none.
+        for n in 3..30_usize {
+            let corner = |k: usize| (TAU * k as f64 / n as f64 + 0.1).sin_cos();
+            let polygon: Points = (0..n).map(corner).map(|(y, x)| [x, y]).collect();
+            for each in [4, 8] {
+                let expected: Vec<usize> = if n <= 12 { (0..n).map(|k| k * each).collect() } else { Vec::new() };
+                assert_eq!(found(&sides(&polygon, each)), expected, "{n}");
+            }
+        }
         for n in [8_usize, 20, 40, 100] {
             let arc: Points = (0..=n).map(|k| PI * k as f64 / n as f64).map(|t| [t.cos(), t.sin()]).collect();
             let chord = (1..n).map(|k| [-1.0 + 2.0 * k as f64 / n as f64, 0.0]);
