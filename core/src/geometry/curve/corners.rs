@@ -64,7 +64,7 @@ impl<'a, R: Real> Kinked<'a, R> {
         let points = distinct(given);
         let p = |k: usize| points.get(k).map_or(Complex::default(), |[x, y]| complex(*x, *y));
         let size = (0..points.len()).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0))));
-        let sorted = matches!(corners, Corners::At(list) if list.is_sorted());
+        let sorted = matches!(corners, Corners::At(list) if list.iter().zip(list.iter().skip(1)).all(|(a, b)| a <= b));
         Kinked { points, corners, given, sorted, size }
     }
 
@@ -149,7 +149,11 @@ impl<'a, R: Real> Kinked<'a, R> {
             Corners::None => false,
             Corners::At(list) => {
                 let n = self.points.len();
-                let listed = if self.sorted { list.binary_search(&i).is_ok() } else { list.contains(&i) };
+                let listed = if self.sorted {
+                    list.get(list.partition_point(|k| *k < i)) == Some(&i)
+                } else {
+                    list.contains(&i)
+                };
                 listed || ((i == 0 || i + 1 == n) && list.iter().any(|k| *k >= n && self.own(*k) == i))
             }
             Corners::Auto => {
