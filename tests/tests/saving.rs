@@ -161,7 +161,7 @@ fn a_loaded_simulation_goes_on_bit_for_bit_in_single_precision() {
 
 #[test]
 fn another_process_goes_on_bit_for_bit() {
-    const NAME: &str = "another_process_goes_on_bit_for_bit";
+    const NAME: &str = "saving::another_process_goes_on_bit_for_bit";
     const FILE: &str = "NEKTON_TEST_SAVED";
     let new = || SimBuf::new(model::<f64>(Case::Channels, 0.3), adams(1e-6)).unwrap();
     let finish = |sim: &mut SimBuf<f64>| {

@@ -1,0 +1,29 @@
+//! All claims in one program, which compiles core once; only `allocation.rs`, with an allocator of its own, stands apart.
+
+mod articulated;
+mod bad_input;
+mod channels;
+mod circulation;
+mod conservation;
+mod contact;
+mod defaults;
+mod drives;
+mod driving;
+mod errata;
+mod extremes;
+mod gradients;
+mod indicators;
+mod ingredients;
+mod integrators;
+mod isolated_flow;
+mod near_contact;
+mod offset_mass;
+mod outlines;
+mod precision;
+mod reference_values;
+mod regrading;
+mod repulsion;
+mod saving;
+mod views;
+mod walls;
+mod windows;
