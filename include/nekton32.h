@@ -386,7 +386,7 @@ nekton_status nekton32_model_req(const struct nekton32_scene_def *def, struct ne
 /**
  * Compiles a scene into mem (len bytes, aligned to NEKTON_ALIGN), which must stay as long as the model is used and
  * needs no other clean-up; def is not needed afterwards. *model is set on success only. Returns a notice (> 0, the
- * first; all by nekton32_model_notice) when something was mended.
+ * first; all by nekton32_model_notice) when something was mended. How well points tell a curve is looked at by nekton32_model_create only.
  * Errors: as nekton32_model_req, MEMORY_TOO_SMALL: nothing was written to mem. BAD_SHAPE, SELF_INTERSECTION,
  * OUT_OF_RANGE, BAD_TABLE, SINGULAR: mem holds no model. O(n^3) once for shapes other than ellipses. Any thread.
  */
@@ -444,6 +444,16 @@ nekton_status nekton32_model_notice(const struct nekton32_model *model,
 nekton_status nekton32_model_nodes(const struct nekton32_model *model,
                                    const struct nekton_place *place,
                                    size_t *nodes);
+
+/**
+ * Of a curve through points, the relative error of added mass and area that may come from what is between the points: an
+ * estimate, and no part of nekton_resolution, which knows the curve only. From the tolerance of the scene (0: a thousandth) on
+ * the model has the notice OUTLINE_UNCERTAIN. -1 for other shapes, and in a model from nekton32_model_init, which uses no heap.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, OUT_OF_RANGE (no such place). Any thread.
+ */
+nekton_status nekton32_model_outline_error(const struct nekton32_model *model,
+                                           const struct nekton_place *place,
+                                           float *error);
 
 /**
  * Point (x, y: 2 numbers) of an outline at parameter t in [0, 2 pi): links in their own frame with the centre of

@@ -127,8 +127,9 @@ impl Values {
             "sim_bytes": p.sim_bytes,
             "operations": p.operations,
         });
-        let outlines = setup.scene.outlines().into_iter().map(|(whose, what)| (whose, json!(what)));
+        let outlines = setup.outlines().into_iter().map(|(whose, what)| (whose, json!(what)));
         out["outlines"] = Value::Object(outlines.collect());
+        out["outline_errors"] = Value::Object(setup.outline_errors().map(|(whose, e)| (whose, json!(e))).collect());
         out["notices"] = json!(self.notices(setup));
         out
     }
@@ -172,7 +173,7 @@ impl Values {
             }
         }
         let _ = write!(text, "\nplan\n{}", setup.model.view().plan());
-        for (whose, what) in setup.scene.outlines() {
+        for (whose, what) in setup.outlines() {
             let _ = write!(text, "\noutline of {whose}: {what}");
         }
         for notice in self.notices(setup) {

@@ -14,7 +14,7 @@ pub fn plan(path: &Path) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
     say(&setup.model.view().plan().to_string());
     say(&format!("nodes                    {}", setup.nodes().join(", ")));
-    for (whose, what) in setup.scene.outlines() {
+    for (whose, what) in setup.outlines() {
         say(&format!("outline of {whose}: {what}"));
     }
     let mut notices = setup.notices();

@@ -133,7 +133,7 @@ fn describe(setup: &Setup, run: &RunDef) -> Record {
         ("integrator".into(), method),
         ("nodes".into(), setup.nodes().join(", ")),
     ];
-    settings.extend(setup.scene.outlines().into_iter().map(|(whose, what)| (format!("outline of {whose}"), what)));
+    settings.extend(setup.outlines().into_iter().map(|(whose, what)| (format!("outline of {whose}"), what)));
     settings.extend(setup.scene.channels());
     Record {
         joints: setup.joints.iter().filter_map(|(_, user)| labels.get(*user).cloned()).collect(),
@@ -352,7 +352,7 @@ fn figures(sim: &Sim<'_, f64>, record: &mut Record) {
 fn summary(setup: &Setup, record: &Record, folder: &Path, time: Duration) {
     let reached = record.rows.last().map_or(0.0, |r| r.t);
     say(&format!("t = {reached:.6} s reached in {:.2} s; {} rows", time.as_secs_f64(), record.rows.len()));
-    for (whose, what) in setup.scene.outlines() {
+    for (whose, what) in setup.outlines() {
         say(&format!("  outline of {whose}: {what}"));
     }
     for (name, value) in &record.figures {

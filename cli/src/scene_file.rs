@@ -28,14 +28,14 @@ use shape::{ShapeDef, nodes};
 /// Points that a notice names, at most.
 const MOST_NAMED: usize = 12;
 
-/// A curve whose points turn by so much that they may be corners, or too few.
-fn coarse(whose: &str, shape: &ShapeDef) -> Option<String> {
-    let (points, turn) = shape.coarse()?;
-    Some(format!(
-        "outline of {whose}: it turns by up to {turn:.0}° at its points {} (counted from 0), which are no corners: name them in `corners` if \
-         they are, else give more points there; no bound sees what the points do not show",
-        listed(&points)
-    ))
+/// A part in per cent, one digit.
+pub fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    match percent {
+        p if p >= 1.0 => format!("{p:.0} %"),
+        p if p >= 0.01 => format!("{p:.2} %"),
+        p => format!("{p:.0e} %"),
+    }
 }
 
 fn listed(points: &[usize]) -> String {
@@ -107,26 +107,30 @@ impl SceneFile {
 
     /// What the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
-        let signals = self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices);
-        self.shapes().filter_map(|(whose, shape)| coarse(&whose, shape)).chain(signals).collect()
+        self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
     }
 
-    /// Every outline and whose it is.
-    fn shapes(&self) -> impl Iterator<Item = (String, &ShapeDef)> {
-        let links = self.labels().into_iter().zip(self.bodies.iter().flat_map(|b| &b.links).map(|l| &l.shape));
-        let tank = self.tank.iter().map(|t| ("tank".to_owned(), &t.shape));
-        let walls = self.obstacles.iter().enumerate().map(|(k, o)| (format!("obstacle {}", k + 1), &o.shape));
+    /// Every outline: whose it is, where the core has it, and what the user is told of points that are not in the scene file.
+    pub fn outlines(&self) -> impl Iterator<Item = (String, Place, Option<&str>)> {
+        self.shapes().map(|(whose, place, shape)| (whose, place, shape.told()))
+    }
+
+    fn shapes(&self) -> impl Iterator<Item = (String, Place, &ShapeDef)> {
+        let links = self.bodies.iter().enumerate().flat_map(|(b, body)| {
+            let place = move |l| Place::Link(b, body.core_index(l));
+            body.links
+                .iter()
+                .enumerate()
+                .map(move |(l, link)| (format!("{}.{}", body.name, link.name), place(l), &link.shape))
+        });
+        let tank = self.tank.iter().map(|t| ("tank".to_owned(), Place::Tank, &t.shape));
+        let walls = self.obstacles.iter().enumerate();
+        let walls = walls.map(|(k, o)| (format!("obstacle {}", k + 1), Place::Obstacle(k), &o.shape));
         links.chain(tank).chain(walls)
     }
 
-    /// Outlines whose points are not in the scene file: whose they are, and what was read.
-    pub fn outlines(&self) -> Vec<(String, String)> {
-        self.shapes().filter_map(|(whose, s)| Some((whose, s.told()?.to_owned()))).collect()
-    }
-
-    /// Of every link in the user's order, the area of the polygon through the points of its curve, if it is one.
-    pub fn polygon_areas(&self) -> impl Iterator<Item = Option<f64>> {
-        self.bodies.iter().flat_map(|b| &b.links).map(|l| l.shape.polygon_area())
+    fn shape(&self, place: Place) -> Option<&ShapeDef> {
+        self.shapes().find(|(_, p, _)| *p == place).map(|(_, _, shape)| shape)
     }
 
     /// The text of the file.
@@ -218,19 +222,28 @@ impl SceneFile {
 
     /// The points that were taken as corners of a curve, for a notice.
     pub fn corners_found(&self, place: Place) -> String {
-        let shape = match place {
-            Place::Link(b, l) => self.link(b, l).map(|(_, link)| &link.shape),
-            Place::Obstacle(k) => self.obstacles.get(k).map(|w| &w.shape),
-            Place::Tank => self.tank.as_ref().map(|w| &w.shape),
-            _ => None,
-        };
         let mut all = Vec::new();
-        if let Some(shape) = shape {
+        if let Some(shape) = self.shape(place) {
             shape.core().each_corner(|k| all.push(k));
         }
         format!(
             "kinks at its points {} (counted from 0) were taken as corners; `corners` in its shape gives others, or \"none\"",
             listed(&all)
+        )
+    }
+
+    /// What there is to say of a curve whose points tell it no better than to this error.
+    pub fn uncertain(&self, place: Place, error: f64) -> String {
+        let sharp = self.shape(place).and_then(ShapeDef::sharp).map_or_else(String::new, |(points, turn)| {
+            format!(
+                "; it turns by up to {turn:.0}° at its points {} (counted from 0), which are no corners",
+                listed(&points)
+            )
+        });
+        format!(
+            "its points tell its outline no better than to about {} of added mass, which no bound contains: give more where it bends, or name \
+             its corners in `corners`{sharp}",
+            percent(error)
         )
     }
 

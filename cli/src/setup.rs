@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nekton::status::{Error, Place, Status};
 
-use crate::scene_file::{Integrator, Problem, SceneFile};
+use crate::scene_file::{Integrator, Problem, SceneFile, percent};
 use crate::trade::{Choice, Variant, counts, method, unit};
 use nekton::{Model, ModelBuf, Sim, SimBuf};
 
@@ -20,9 +20,6 @@ pub struct Setup {
     /// For every joint in the user's order, its index in the core and the index of its link in the user's order.
     pub joints: Vec<(usize, usize)>,
 }
-
-/// By which the areas of a curve and of the polygon through its points may differ: eight points of a circle do by 10 %.
-const BULGE: f64 = 0.12;
 
 /// Refuses to take more memory than there is: taken all the same, it would end the process, or another one.
 fn afford(scene: &SceneFile, reals: usize) -> Result<(), Problem> {
@@ -112,6 +109,24 @@ impl Setup {
         })
     }
 
+    /// Whose outlines are given by points, what was read of them, and how well these tell them.
+    pub fn outlines(&self) -> Vec<(String, String)> {
+        let view = self.model.view();
+        let line = |(whose, place, told): (String, Place, Option<&str>)| {
+            let told = told.map(str::to_owned);
+            let known = view.outline_error(place).map(|e| format!("its points tell it to about {}", percent(e)));
+            let all: Vec<String> = told.into_iter().chain(known).collect();
+            (!all.is_empty()).then(|| (whose, all.join("; ")))
+        };
+        self.scene.outlines().filter_map(line).collect()
+    }
+
+    /// The estimated errors of outlines given by points, with whose they are.
+    pub fn outline_errors(&self) -> impl Iterator<Item = (String, f64)> {
+        let view = self.model.view();
+        self.scene.outlines().filter_map(move |(whose, place, _)| Some((whose, view.outline_error(place)?)))
+    }
+
     /// What set-up mended, and what the user should know of tables and channels.
     pub fn notices(&self) -> Vec<String> {
         let view = self.model.view();
@@ -119,24 +134,13 @@ impl Setup {
             let name = self.scene.name_of(place);
             match status {
                 Status::CornersFound => format!("{name}: {}", self.scene.corners_found(place)),
+                Status::OutlineUncertain => {
+                    let error = view.outline_error(place).unwrap_or(f64::NAN);
+                    format!("{name}: {}", self.scene.uncertain(place, error))
+                }
                 other => format!("{name}: {}", other.text()),
             }
         });
-        mended.chain(self.bulging()).chain(self.scene.notices()).collect()
-    }
-
-    /// Curves that enclose much more or less than the polygons through their points.
-    fn bulging(&self) -> impl Iterator<Item = String> {
-        let view = self.model.view();
-        let links = self.links.iter().zip(self.scene.labels()).zip(self.scene.polygon_areas());
-        links.filter_map(move |((core, label), polygon)| {
-            let (polygon, curve) = (polygon?, view.link(*core)?.area);
-            ((curve - polygon).abs() > BULGE * polygon).then(|| {
-                format!(
-                    "link `{label}`: the smooth curve through its points encloses {curve:.4e} m², the polygon {polygon:.4e} m²: give \
-                     more points, or `corners`"
-                )
-            })
-        })
+        mended.chain(self.scene.notices()).collect()
     }
 }

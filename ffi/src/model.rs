@@ -9,7 +9,7 @@ use crate::model_object::{begin_model, model, model_req};
 use crate::shared::NEKTON_ALIGN;
 use crate::types::*;
 use nekton::scene::Description;
-use nekton::{Formulation, Model, ModelRequirement, Real, Status};
+use nekton::{Formulation, Model, ModelMemory, ModelRequirement, Real, Status};
 
 /// Writes a result through a pointer that was checked before anything was computed.
 pub(crate) unsafe fn give<T>(to: *mut T, value: T) -> Outcome<Status> {
@@ -40,7 +40,7 @@ pub(crate) unsafe fn init<R: Real>(
         let scene = Checked::new(def)?;
         let need = Model::requirement(&scene)?;
         check_memory(mem, len, &model_req::<R>(&need)?, (def.addr(), size_of::<SceneDef<R>>()))?;
-        compile(mem, &scene, &need, out, false)
+        compile(mem, &scene, &need, out, false, |_| Ok(()))
     }
 }
 
@@ -51,11 +51,13 @@ unsafe fn compile<R: Real>(
     need: &ModelRequirement,
     out: *mut *mut ModelHandle<R>,
     owned: bool,
+    look: impl FnOnce(&mut ModelMemory<'_, R>) -> nekton::Result<()>,
 ) -> Outcome<Option<Fault>> {
     // SAFETY: the caller's promise.
     unsafe {
         let mut parts = begin_model(mem, need)?;
         let head = Model::init(scene, &mut parts.memory)?;
+        look(&mut parts.memory)?;
         let handle = parts.finish(head, owned)?;
         give(out, handle)?;
         let notice = model(handle.cast_const())?.notices().next();
@@ -101,7 +103,9 @@ pub(crate) unsafe fn create<R: Real>(def: *const SceneDef<R>, out: *mut *mut Mod
         let scene = Checked::new(def)?;
         let scene = nekton::Resolved::of(&scene)?;
         let need = Model::requirement(&scene)?;
-        on_heap(&model_req::<R>(&need)?, |mem| compile(mem, &scene, &need, out, true))
+        on_heap(&model_req::<R>(&need)?, |mem| {
+            compile(mem, &scene, &need, out, true, |memory| memory.look_at_points(&scene))
+        })
     }
 }
 
@@ -230,6 +234,23 @@ pub(crate) unsafe fn notice<R: Real>(
     unsafe {
         give(place, notice.0.into())?;
         give(status, notice.1.code())
+    }
+}
+
+/// −1 where it is not known.
+pub(crate) unsafe fn outline_error<R: Real>(
+    handle: *const ModelHandle<R>,
+    place: *const nekton_place,
+    out: *mut R,
+) -> Outcome<Status> {
+    check_pointer("place", place)?;
+    check_pointer("error", out.cast_const())?;
+    // SAFETY: checked above and in `model`.
+    unsafe {
+        let place = *place;
+        let there = place_of(&place).zip(Some(model(handle)?)).filter(|(p, model)| model.nodes(*p).is_some());
+        let (p, model) = there.ok_or(Fault::of(Status::OutOfRange, "place", f64::from(place.kind)))?;
+        give(out, model.outline_error(p).unwrap_or(-R::one()))
     }
 }
 

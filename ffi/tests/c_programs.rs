@@ -199,6 +199,7 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
         ..Scene::new(r(1.0), r(0.5))
     };
     let model = Arc::new(ModelBuf::new(&scene).unwrap());
+    check("outline_error", &[model.view().outline_error(Place::Link(0, 2)).unwrap_or(-R::one())]);
     check("outline_point", &model.view().outline_point(Place::Link(0, 2), r(1.0)).unwrap());
     let mut owner = SimBuf::new(model, Method::Abm4 { step: r(0.0078125) }).unwrap();
     let mut sim = owner.view();

@@ -79,20 +79,25 @@ fn corners_of_curves_are_found_given_or_left_out_and_a_wrong_number_is_refused()
             let (mut model, mut diag) = (null_mut(), empty_diag());
             let status = unsafe { model_create(def.get(), &mut model, &mut diag) };
             if status < 0 {
-                return (status, f64::NAN, diag.value);
+                return (status, [f64::NAN; 2], diag.value);
             }
+            let mut error = f64::NAN;
+            let place = nekton_place { kind: NEKTON_PLACE_LINK, index: 0, link: 0 };
+            assert_eq!(unsafe { model_outline_error(model, &place, &mut error) }, 0);
             let mut info = unsafe { std::mem::zeroed::<LinkOut<f64>>() };
             assert_eq!(unsafe { model_link(model, 0, &mut info) }, 0);
             assert_eq!(unsafe { model_free(model) }, 0);
-            (status, info.area, f64::NAN)
+            (status, [info.area, error], f64::NAN)
         };
-        let (found, by_itself, _) = area(NEKTON_CORNERS_AUTO, &[]);
+        let (found, [by_itself, error], _) = area(NEKTON_CORNERS_AUTO, &[]);
         assert_eq!(found, Status::CornersFound.code());
         assert!((by_itself - 4.0).abs() < 1e-9, "{by_itself}");
-        let (given, same, _) = area(NEKTON_CORNERS_GIVEN, &[12, 0, 4, 8]);
+        assert!(error < 1e-6, "{error:e}");
+        let (given, [same, _], _) = area(NEKTON_CORNERS_GIVEN, &[12, 0, 4, 8]);
         assert_eq!((given, same.to_bits()), (0, by_itself.to_bits()));
-        let (smooth, bulging, _) = area(NEKTON_CORNERS_NONE, &[]);
-        assert!(smooth == 0 && bulging > 4.0 + 1e-3, "{bulging}");
+        let (smooth, [bulging, error], _) = area(NEKTON_CORNERS_NONE, &[]);
+        assert_eq!(smooth, Status::OutlineUncertain.code());
+        assert!(bulging > 4.0 + 1e-3 && error > 1e-2, "{bulging} {error:e}");
         let (wrong, _, value) = area(NEKTON_CORNERS_GIVEN, &[0, 16]);
         assert_eq!((wrong, value), (Status::OutOfRange.code(), 16.0));
         assert_eq!(area(3, &[]).0, Status::UnknownKind.code());

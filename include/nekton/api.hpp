@@ -41,6 +41,7 @@ template <class R> struct Api;
         static constexpr auto model_joint = &P##_model_joint;                                                                  \
         static constexpr auto model_notice = &P##_model_notice;                                                                \
         static constexpr auto model_nodes = &P##_model_nodes;                                                                  \
+        static constexpr auto model_outline_error = &P##_model_outline_error;                                                  \
         static constexpr auto model_outline_point = &P##_model_outline_point;                                                  \
         static constexpr auto sim_req = &P##_sim_req;                                                                          \
         static constexpr auto sim_init = &P##_sim_init;                                                                        \

@@ -77,6 +77,11 @@ public:
     {
         return detail::done(Api::model_nodes(model_, &place, &out));
     }
+    /** Relative error that may come from what is between the points of a curve; -1 for other shapes. */
+    nekton_status outline_error(const nekton_place &place, R &out) const
+    {
+        return detail::done(Api::model_outline_error(model_, &place, &out));
+    }
     /** Point of an outline at a parameter in [0, 2 pi). */
     nekton_status outline_point(const nekton_place &place, R t, std::array<R, 2> &out) const
     {

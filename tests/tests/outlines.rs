@@ -1,8 +1,9 @@
-//! One outline described in two ways is one outline: in memory, in nodes, and in what it does.
+//! One outline described in two ways is one outline: in memory, in nodes, and in what it does; and what its points leave open is told.
 
-use nekton::scene::{Quadrature, Scene, Shape};
-use nekton::{Model, ModelBuf};
+use nekton::scene::{Corners, Quadrature, Scene, Shape};
+use nekton::{Model, ModelBuf, Place, SimBuf, Status};
 use nekton_tests::*;
+use std::f64::consts::{PI, TAU};
 
 #[test]
 fn a_rectangle_takes_what_the_polygon_of_its_corners_takes() {
@@ -103,4 +104,146 @@ fn points_coincide_or_not_in_every_unit_of_length_alike() {
         let error = model(&ring(unit, 1e-15)).unwrap_err();
         assert_eq!((error.status, error.value), (nekton::Status::BadShape, 4.0), "{unit:e}: {error}");
     }
+}
+
+/// Added mass of a lone body along x and along y, and its area.
+fn mass_and_area(shape: Shape<'_, f64>) -> Option<[f64; 3]> {
+    let links = [link(shape, 1.0, 0)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+    let scene = Scene { bodies: &bodies, allow_unresolved: true, tolerance: Some(1e-4), ..Scene::new(1.0, 0.0) };
+    let mut sim = SimBuf::new(ModelBuf::new(&scene).ok()?.into(), adams(1e-6)).ok()?;
+    let m = matrix(&mut sim.view(), |s, out| s.added_mass(out));
+    let area = sim.view().model().link(0)?.area;
+    Some([m[0][0], m[1][1], area])
+}
+
+/// The estimated error of a curve through points, and that found.
+fn estimated(points: &[[f64; 2]], corners: Corners<'_>, exact: [f64; 3]) -> (f64, f64) {
+    let shape = Shape::Curve { points, corners };
+    let estimate = shape.outline_error().unwrap().unwrap();
+    let found = mass_and_area(shape).unwrap();
+    let scale = exact[0].max(exact[1]);
+    let error = (0..2).fold((found[2] / exact[2] - 1.0).abs(), |e, k| e.max((found[k] - exact[k]).abs() / scale));
+    (estimate, error)
+}
+
+fn ring(a: f64, b: f64, steps: impl Iterator<Item = f64>) -> Vec<[f64; 2]> {
+    steps.map(|t| [a * (TAU * t).cos(), b * (TAU * t).sin()]).collect()
+}
+
+/// The unit square, or one of another height, by so many steps along its sides in turn, and where its corners are.
+fn plate(height: f64, steps: [usize; 4]) -> (Vec<[f64; 2]>, [usize; 4]) {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, height], [0.0, height]];
+    let along = |k: usize, i: usize| {
+        let t = i as f64 / steps[k] as f64;
+        [0, 1].map(|c| corners[k][c] * (1.0 - t) + corners[(k + 1) % 4][c] * t)
+    };
+    let points = (0..4).flat_map(|k| (0..steps[k]).map(move |i| (k, i))).map(|(k, i)| along(k, i)).collect();
+    (points, [0, steps[0], steps[0] + steps[1], steps[0] + steps[1] + steps[2]])
+}
+
+#[test]
+fn points_that_leave_the_outline_uncertain_are_noticed_and_those_that_tell_it_are_not() {
+    let even = |n: usize, shift: f64| (0..n).map(move |k| (k as f64 + shift) / n as f64);
+    // Few points, none at the tips; few on one side only; corners that nobody knows of.
+    let uneven =
+        |n: usize| (0..n).map(move |k| 0.5 * k as f64 / n as f64).chain((0..100).map(|k| 0.5 + k as f64 / 200.0));
+    let disc = [PI, PI, PI];
+    let thin = [PI * 0.01, PI, PI * 0.1];
+    let square = |height: f64| {
+        let shape = Shape::Rectangle { width: 1.0, height, radius: Some(1e-5 * height) };
+        mass_and_area(shape).unwrap()
+    };
+    let mut rough: Vec<(Vec<[f64; 2]>, Corners<'_>, [f64; 3])> = vec![
+        (ring(1.0, 0.1, even(16, 0.5)), Corners::Auto, thin),
+        (ring(1.0, 0.1, even(24, 0.5)), Corners::Auto, thin),
+        (ring(1.0, 1.0, uneven(4)), Corners::Auto, disc),
+    ];
+    let three = [0, 20, 40];
+    for (height, steps, corners) in [
+        (1.0, [2, 2, 2, 2], Corners::Auto),
+        (1.0, [3, 3, 3, 3], Corners::Auto),
+        (1.0, [20, 20, 20, 20], Corners::None),
+        (1.0, [20, 20, 20, 20], Corners::At(&three)),
+        (1.0, [20, 1, 20, 1], Corners::None),
+        (1.0, [40, 10, 5, 3], Corners::Auto),
+        (0.1, [2, 2, 2, 2], Corners::Auto),
+        (0.1, [20, 2, 20, 2], Corners::Auto),
+    ] {
+        rough.push((plate(height, steps).0, corners, square(height)));
+    }
+    for (points, corners, exact) in rough {
+        let (estimate, error) = estimated(&points, corners, exact);
+        println!("{} points: estimate {estimate:.1e}, error {error:.1e}", points.len());
+        assert!(error > 1e-3 && estimate > error / 6.0, "{estimate:e} {error:e} {points:?}");
+    }
+    for n in [32, 64, 128] {
+        let (estimate, error) = estimated(&ring(1.0, 1.0, even(n, 0.0)), Corners::Auto, disc);
+        assert!(estimate < 1e-7 && error < estimate, "{n}: {estimate:e} {error:e}");
+    }
+    let (estimate, error) = estimated(&ring(1.0, 0.1, even(160, 0.5)), Corners::Auto, thin);
+    println!("thin: {estimate:.1e} {error:.1e}");
+    assert!(estimate < 1e-3 && error < 1e-5, "{estimate:e} {error:e}");
+    for (height, steps) in [(1.0, [1; 4]), (1.0, [2; 4]), (0.1, [40, 10, 5, 3])] {
+        // With its corners given a plate is known from any points on its sides.
+        let (points, corners) = plate(height, steps);
+        let (estimate, error) = estimated(&points, Corners::At(&corners), square(height));
+        assert!(estimate < 1e-6 && error < 1e-4, "{steps:?}: {estimate:e} {error:e}");
+    }
+}
+
+#[test]
+fn the_estimate_falls_with_noise_and_does_not_hang_on_place_size_or_direction() {
+    let mut state = 3_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let noisy = |size: f64, noise: &mut dyn FnMut() -> f64| -> f64 {
+        let points: Vec<[f64; 2]> =
+            ring(1.0, 1.0, (0..100).map(|k| k as f64 / 100.0)).iter().map(|p| p.map(|x| x + size * noise())).collect();
+        Shape::curve(&points).outline_error().unwrap().unwrap()
+    };
+    for size in [1e-2, 1e-3, 1e-4] {
+        let estimate = noisy(size, &mut noise);
+        assert!(estimate > 0.5 * size && estimate < 5.0 * size, "{size}: {estimate:e}");
+    }
+    let points = ring(1.0, 0.3, (0..24).map(|k| (k as f64 + 0.2) / 24.0));
+    let estimate = |points: &[[f64; 2]]| Shape::curve(points).outline_error().unwrap().unwrap();
+    let moved: Vec<_> = points.iter().map(|[x, y]| [5.0 - 1e-3 * y, 3.0 + 1e-3 * x]).collect();
+    let backwards: Vec<_> = points.iter().rev().copied().collect();
+    let later: Vec<_> = points[7..].iter().chain(&points[..7]).copied().collect();
+    let first = estimate(&points);
+    for other in [moved, backwards, later] {
+        assert!((estimate(&other) / first - 1.0).abs() < 0.2, "{first:e} {:e}", estimate(&other));
+    }
+    // One point twice does not make a side shorter.
+    let repeated: Vec<_> = points.iter().chain(&points[..1]).copied().collect();
+    assert_eq!(estimate(&repeated), first);
+}
+
+#[test]
+fn a_model_tells_how_well_its_points_tell_every_outline_and_whose_do_not() {
+    let (rough, fine) = (plate(1.0, [2; 4]).0, ring(0.5, 0.4, (0..24).map(|k| f64::from(k) / 24.0)));
+    let shapes = [Shape::curve(&rough), Shape::Ellipse { a: 0.5, b: 0.3 }, Shape::curve(&fine), Shape::curve(&rough)];
+    let links = shapes.map(|shape| [link(shape, 1.0, 64)]);
+    let bodies: Vec<_> =
+        links.iter().zip(0..).map(|(l, k)| body(l, [4.0 * f64::from(k), 0.0, 0.0], [0.0; 3])).collect();
+    let obstacles = [wall(Shape::curve(&rough), [0.0, 9.0], 0.0, 64)];
+    let scene = Scene { bodies: &bodies, obstacles: &obstacles, ..Scene::new(1.0, 0.0) };
+    let model = ModelBuf::new(&scene).unwrap();
+    let view = model.view();
+    let told = |place| view.outline_error(place);
+    let known = Shape::curve(&rough).outline_error().unwrap();
+    assert!(known > Some(1e-2));
+    assert_eq!([Place::Link(0, 0), Place::Link(3, 0), Place::Obstacle(0)].map(told), [known; 3]);
+    assert_eq!((told(Place::Link(1, 0)), told(Place::Tank)), (None, None));
+    let fine = told(Place::Link(2, 0)).unwrap();
+    assert!(fine < 1e-3 && fine > 1e-8, "{fine:e}");
+    let noticed: Vec<_> = view.notices().collect();
+    let places = [Place::Obstacle(0), Place::Link(0, 0), Place::Link(3, 0)];
+    assert_eq!(noticed, places.map(|place| (place, Status::OutlineUncertain)));
+    // A tolerance that is asked for is what the points are held to.
+    let strict = Scene { tolerance: Some(0.5 * fine), ..scene };
+    assert!(ModelBuf::new(&strict).unwrap().view().notices().any(|(place, _)| place == Place::Link(2, 0)));
 }

@@ -17,7 +17,7 @@ use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
 use points::MOST;
-pub use points::{CUSP, Outline, turn};
+pub use points::{Outline, turn};
 
 /// Both surfaces of a section begin, and end, at most this part of its chord apart.
 const OPEN: f64 = 0.1;

@@ -3,11 +3,11 @@
 use nekton::scene::{Corners, Shape};
 
 use super::outline::naca::{Naca, POINTS, Tail};
-use super::outline::{CUSP, Outline, turn};
+use super::outline::{Outline, turn};
 use super::reader::{Item, Outcome, Section};
 
-/// A turn in degrees of a point of a smooth curve that is noticed.
-const COARSE: f64 = 60.0;
+/// A turn in degrees of a point of a smooth curve that is named.
+const SHARP: f64 = 60.0;
 
 /// A shape with its own points.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,24 +155,16 @@ impl ShapeDef {
         }
     }
 
-    /// Area of the polygon through the points of a curve.
-    pub fn polygon_area(&self) -> Option<f64> {
-        match self {
-            ShapeDef::Curve(outline, _) => Some(outline.polygon_area()),
-            _ => None,
-        }
-    }
-
     /// The points of a curve at which it turns by more than smooth ones should, and is no corner; with the largest turn, in degrees.
-    pub fn coarse(&self) -> Option<(Vec<usize>, f64)> {
+    pub fn sharp(&self) -> Option<(Vec<usize>, f64)> {
         let ShapeDef::Curve(outline, _) = self else { return None };
         let (points, n) = (&outline.points, outline.points.len());
         let mut corners = vec![false; n];
         self.core().each_corner(|k| corners[k] = true);
         let turns = (0..n).filter(|k| !corners[*k]).map(|k| (k, turn(points, k)));
-        let coarse: Vec<_> = turns.filter(|(_, turn)| (COARSE..CUSP).contains(turn)).collect();
-        let most = coarse.iter().fold(0.0, |most: f64, (_, turn)| most.max(*turn));
-        (!coarse.is_empty()).then(|| (coarse.into_iter().map(|(k, _)| k).collect(), most))
+        let sharp: Vec<_> = turns.filter(|(_, turn)| *turn >= SHARP).collect();
+        let most = sharp.iter().fold(0.0, |most: f64, (_, turn)| most.max(*turn));
+        (!sharp.is_empty()).then(|| (sharp.into_iter().map(|(k, _)| k).collect(), most))
     }
 
     /// What the user is told of points that the scene file does not show.

@@ -6,6 +6,8 @@
 //! Tested by `tests/allocation`.
 
 use crate::base::scalar::Real;
+#[cfg(feature = "alloc")]
+use crate::base::status::Error;
 use crate::base::status::{Result, Status};
 
 /// Splits `n` elements off the front of `rest`.
@@ -18,6 +20,23 @@ pub(crate) fn take<'a, T>(rest: &mut &'a mut [T], n: usize) -> Result<&'a mut [T
 /// The same as elements of another type of the same size.
 pub(crate) fn take_as<'a, R: Real, T: bytemuck::Pod>(rest: &mut &'a mut [R], n: usize) -> Result<&'a mut [T]> {
     bytemuck::try_cast_slice_mut(take(rest, n)?).map_err(|_| Status::Internal.into())
+}
+
+/// An empty vector with room for `n` elements; `OutOfMemory` with its bytes if there is none.
+#[cfg(feature = "alloc")]
+pub(crate) fn room<T>(n: usize) -> Result<alloc::vec::Vec<T>> {
+    let mut memory = alloc::vec::Vec::new();
+    let none = Error::new(Status::OutOfMemory).of("bytes", n as f64 * size_of::<T>() as f64);
+    memory.try_reserve_exact(n).map_err(|_| none)?;
+    Ok(memory)
+}
+
+/// `n` elements on the heap; `OutOfMemory` with their bytes if there is no room.
+#[cfg(feature = "alloc")]
+pub(crate) fn filled<T: Clone + Default>(n: usize) -> Result<alloc::vec::Vec<T>> {
+    let mut memory = room(n)?;
+    memory.resize(n, T::default());
+    Ok(memory)
 }
 
 /// The elements `at .. at + n`, or an empty slice when they are not all there.

@@ -45,6 +45,7 @@ statuses! {
     EnergyDrift = 5, "energy and the work of the drives do not balance";
     PointRepeated = 6, "the first point is repeated at the end and was dropped";
     CornersFound = 7, "kinks of the points were taken as corners";
+    OutlineUncertain = 8, "the points leave the outline uncertain: give more where it bends, or name its corners";
     MemoryTooSmall = -1, "the memory given is smaller than required";
     NotFinite = -2, "a value is not finite";
     OutOfRange = -3, "a value is out of its range";

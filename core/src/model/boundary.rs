@@ -77,6 +77,8 @@ pub struct BoundaryRecord<R> {
     pub(crate) spacing: R,
     /// What set-up noticed.
     pub(crate) notice: Status,
+    /// Estimate of the relative error that comes from what is between the points of a curve; NaN where none was made.
+    pub(crate) outline_error: R,
 }
 
 /// Isolated circulatory flow of one boundary, analytic outside: log W of an ellipse in closed form, else tabulated.
@@ -111,6 +113,7 @@ impl<R: Real> Default for BoundaryRecord<R> {
             reach: R::zero(),
             spacing: R::zero(),
             notice: Status::Ok,
+            outline_error: R::NAN,
         }
     }
 }

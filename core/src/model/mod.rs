@@ -256,7 +256,18 @@ impl<'a, R: Real> Model<'a, R> {
     }
     /// What set-up noticed and mended, such as an outline that was turned round.
     pub fn notices(&self) -> impl Iterator<Item = (Place, Status)> + use<'a, R> {
-        self.boundaries.iter().filter(|b| b.notice != Status::Ok).map(|b| (b.place, b.notice))
+        let limit = self.head.tolerance;
+        self.boundaries.iter().flat_map(move |b| {
+            let uncertain = b.outline_error > limit;
+            let told = [(uncertain, Status::OutlineUncertain), (b.notice != Status::Ok, b.notice)];
+            told.into_iter().filter_map(|(is, status)| is.then_some((b.place, status)))
+        })
+    }
+    /// Of a curve through points, the relative error of added mass and area that may come from what is between the points
+    /// ([`Shape::outline_error`](crate::scene::Shape::outline_error)); it is no part of the bound of the error in space. `None` for other
+    /// shapes, and where there was no heap to find it ([`ModelMemory::look_at_points`](crate::ModelMemory::look_at_points)).
+    pub fn outline_error(&self, place: Place) -> Option<R> {
+        self.boundaries.iter().find(|b| b.place == place).map(|b| b.outline_error).filter(|e| !e.is_nan())
     }
     /// A point of an outline at parameter `t` ∈ [0, 2π): links in their own frame with the centre of mass as
     /// origin, walls in the world. `None` if there is no such boundary.

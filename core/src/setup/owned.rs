@@ -1,24 +1,17 @@
 //! Models and simulations that own their memory (feature `alloc`).
 
+use crate::base::memory::filled;
 use crate::base::scalar::Real;
-use crate::base::status::{Error, Result, Status};
+use crate::base::status::Result;
 use crate::model::boundary::BoundaryRecord;
 use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scene::Description;
 use crate::setup::automatic_nodes::{MOST_CHECKED, Resolved, automatic, target};
 use crate::setup::compile::ModelMemory;
+use crate::setup::items::items;
 use crate::simulation::sim::{Sim, SimHead};
 use crate::simulation::state::Method;
 use alloc::{sync::Arc, vec::Vec};
-
-/// Memory for `n` of something; `OutOfMemory` with its bytes if there is none.
-fn memory<T: Clone + Default>(n: usize) -> Result<Vec<T>> {
-    let mut memory = Vec::new();
-    let none = Error::new(Status::OutOfMemory).of("bytes", n as f64 * size_of::<T>() as f64);
-    memory.try_reserve_exact(n).map_err(|_| none)?;
-    memory.resize(n, T::default());
-    Ok(memory)
-}
 
 /// A compiled scene that owns its memory. `Send + Sync`.
 #[derive(Clone, Debug)]
@@ -36,14 +29,18 @@ impl<R: Real> ModelBuf<R> {
     /// # Errors
     /// As [`Model::init`]; `OutOfMemory` with the bytes.
     pub fn new(scene: &impl Description<R>) -> Result<Self> {
-        if automatic(scene) { ModelBuf::compiled(&Resolved::of(scene)?) } else { ModelBuf::compiled(scene) }
+        let mut model =
+            if automatic(scene) { ModelBuf::compiled(&Resolved::of(scene)?) } else { ModelBuf::compiled(scene) }?;
+        let ModelBuf { links, coordinates, boundaries, reals, .. } = &mut model;
+        ModelMemory { links, coordinates, boundaries, reals }.look_at_points(scene)?;
+        Ok(model)
     }
 
     /// Compiles a scene with the counts that its description gives.
     fn compiled(scene: &impl Description<R>) -> Result<Self> {
         let need = Model::requirement(scene)?;
-        let (mut links, mut coordinates) = (memory(need.links)?, memory(need.coordinates)?);
-        let (mut boundaries, mut reals) = (memory(need.boundaries)?, memory(need.reals)?);
+        let (mut links, mut coordinates) = (filled(need.links)?, filled(need.coordinates)?);
+        let (mut boundaries, mut reals) = (filled(need.boundaries)?, filled(need.reals)?);
         let mut memory = ModelMemory {
             links: &mut links,
             coordinates: &mut coordinates,
@@ -57,6 +54,27 @@ impl<R: Real> ModelBuf<R> {
     /// The model's view.
     pub fn view(&self) -> Model<'_, R> {
         Model::view(&self.head, &self.links, &self.coordinates, &self.boundaries, &self.reals)
+    }
+}
+
+impl<R: Real> ModelMemory<'_, R> {
+    /// Finds out how well the points of curves tell them, in the memory of a model of this scene: see
+    /// [`Model::outline_error`] and the notice `OutlineUncertain`. [`ModelBuf::new`] does so itself.
+    ///
+    /// # Errors
+    /// As [`Shape::outline_error`](crate::scene::Shape::outline_error).
+    pub fn look_at_points(&mut self, scene: &impl Description<R>) -> Result<()> {
+        for (i, item) in items(scene).enumerate() {
+            let known = items(scene).take(i).position(|other| other.shape == item.shape);
+            let error = match known.and_then(|twin| self.boundaries.get(twin)) {
+                Some(twin) => twin.outline_error,
+                None => item.shape.outline_error().map_err(|e| e.at(item.place))?.unwrap_or(R::NAN),
+            };
+            if let Some(record) = self.boundaries.get_mut(i) {
+                record.outline_error = error;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -120,7 +138,7 @@ impl<R: Real> SimBuf<R> {
     /// As [`Sim::head`] and [`Sim::init`]; `OutOfMemory` with the bytes.
     pub fn new(model: Arc<ModelBuf<R>>, method: Method<R>) -> Result<Self> {
         let mut head = Sim::head(method)?;
-        let mut reals = memory(Sim::requirement(&model.view())?.reals)?;
+        let mut reals = filled(Sim::requirement(&model.view())?.reals)?;
         Sim::init(model.view(), &mut head, &mut reals)?;
         Ok(SimBuf { model, head, reals })
     }
@@ -131,7 +149,7 @@ impl<R: Real> SimBuf<R> {
     /// As [`Sim::save`].
     pub fn save(&mut self) -> Result<Vec<u8>> {
         let sim = self.view();
-        let mut bytes = memory(sim.save_len())?;
+        let mut bytes = filled(sim.save_len())?;
         sim.save(&mut bytes)?;
         Ok(bytes)
     }

@@ -109,6 +109,9 @@ int main(void) {
     size_t nodes = 0;
     MUST(nekton_model_nodes(model, &link_info.place, &nodes));
     if (nodes != link_info.nodes) return 5;
+    real outline_error = 0;
+    MUST(nekton_model_outline_error(model, &link_info.place, &outline_error));
+    print("outline_error", &outline_error, 1);
     MUST(nekton_model_outline_point(model, &link_info.place, (real)1.0, point));
     print("outline_point", point, 2);
 

@@ -39,11 +39,6 @@ impl Outline {
     pub fn described(self, from: &str) -> Self {
         Outline { told: Some(format!("{from}: {}", description(&self.points))), ..self }
     }
-
-    /// Area of the polygon through the points.
-    pub fn polygon_area(&self) -> f64 {
-        0.5 * twice_area(&self.points).abs()
-    }
 }
 
 /// Twice the signed area of the polygon through points.

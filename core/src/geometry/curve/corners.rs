@@ -82,7 +82,13 @@ impl<'a, R: Real> Kinked<'a, R> {
         (i as isize).saturating_add(k).checked_rem_euclid(self.points.len() as isize).unwrap_or(0) as usize
     }
 
-    fn point(&self, i: usize) -> Complex<R> {
+    /// Number of points.
+    #[cfg(feature = "alloc")]
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    pub(super) fn point(&self, i: usize) -> Complex<R> {
         self.points.get(i).map_or(Complex::default(), |[x, y]| complex(*x, *y))
     }
 
@@ -106,7 +112,7 @@ impl<'a, R: Real> Kinked<'a, R> {
     }
 
     /// The amount of the turn at a point, and over the mean of its segments.
-    fn turn(&self, i: usize) -> (R, R) {
+    pub(super) fn turn(&self, i: usize) -> (R, R) {
         let (c, s) = self.turned(i);
         let turn = s.abs().atan2(c);
         let (p, from, to) = (self.point(i), self.point(self.along(i, -1)), self.point(self.along(i, 1)));

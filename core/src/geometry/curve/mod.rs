@@ -13,6 +13,8 @@
 mod added_mass_test;
 mod corners;
 mod ellipse;
+#[cfg(feature = "alloc")]
+mod every_second;
 mod fourier;
 mod from_shape;
 mod polygon;

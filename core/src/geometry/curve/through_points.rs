@@ -46,6 +46,12 @@ pub(super) fn point_before<R: Real>(knots: &[R], n: usize, i: usize) -> usize {
     part(knots, EXTRA, n).partition_point(|knot| *knot <= t).saturating_sub(1)
 }
 
+/// Parameter of point `k`.
+#[cfg(feature = "alloc")]
+pub(super) fn knot<R: Real>(knots: &[R], k: usize) -> R {
+    at(knots, k.saturating_add(EXTRA))
+}
+
 /// Number of samples on the grid.
 pub(super) const fn samples(n: usize) -> usize {
     n.saturating_mul(SAMPLES)
