@@ -247,3 +247,37 @@ fn a_model_tells_how_well_its_points_tell_every_outline_and_whose_do_not() {
     let strict = Scene { tolerance: Some(0.5 * fine), ..scene };
     assert!(ModelBuf::new(&strict).unwrap().view().notices().any(|(place, _)| place == Place::Link(2, 0)));
 }
+
+#[test]
+fn a_body_or_wall_drawn_far_from_the_origin_is_the_one_drawn_near() {
+    // Coordinates as maps and drawings have them, the last ones with a tenth of a micrometre on a metre.
+    let section: Vec<_> = (0..160)
+        .map(|k| {
+            let x = 0.5 * (1.0 + (TAU * f64::from(k) / 160.0).cos());
+            let y = 0.6 * (0.2969 * x.sqrt() + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
+            [x, if k < 80 { y } else { -y }]
+        })
+        .collect();
+    let triangle = [[0.1, 0.2], [1.3, 0.0], [0.6, 0.9]];
+    let mass = |points: &[[f64; 2]], vertices: &[[f64; 2]], position: [f64; 2]| {
+        let links = [[link(Shape::curve(points), 1.0, 0)], [link(Shape::Polygon { vertices, radius: None }, 1.0, 0)]];
+        let bodies = [body(&links[0], [0.0; 3], [0.0; 3]), body(&links[1], [2.0, 0.0, 0.3], [0.0; 3])];
+        let obstacles = [wall(Shape::curve(points), position, 0.0, 0)];
+        let mut sim = at_start(&Scene { bodies: &bodies, obstacles: &obstacles, ..Scene::new(1.0, 0.0) });
+        let mut sim = sim.view();
+        let told: Vec<_> = sim.model().notices().map(|(_, status)| status).collect();
+        assert_eq!(told, [Status::CornersFound; 2]);
+        assert!(sim.resolution().unwrap().bound() < 1e-3);
+        matrix(&mut sim, |s, out| s.added_mass(out)).concat()
+    };
+    let near = mass(&section, &triangle, [0.0, -2.0]);
+    for (offset, error) in [([40.0, -30.0], 1e-9), ([5e5, 5.6e6], 5e-9), ([-1e9, 3e8], 1e-6)] {
+        let moved =
+            |points: &[[f64; 2]]| -> Vec<_> { points.iter().map(|p| [p[0] + offset[0], p[1] + offset[1]]).collect() };
+        let far = mass(&moved(&section), &moved(&triangle), [-offset[0], -2.0 - offset[1]]);
+        let largest = near.iter().fold(0.0, |l: f64, x| l.max(x.abs()));
+        let difference = near.iter().zip(&far).fold(0.0, |d: f64, (a, b)| d.max((a - b).abs()));
+        println!("{offset:?}: {:.1e}", difference / largest);
+        assert!(difference < error * largest, "{offset:?}: {difference:e}");
+    }
+}

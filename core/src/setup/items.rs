@@ -5,7 +5,7 @@
 use crate::base::scalar::Real;
 use crate::base::status::Place;
 use crate::geometry::pose::Pose;
-use crate::scene::{Description, Mass, Shape, each_link};
+use crate::scene::{Description, Link, Mass, Shape, each_link};
 use crate::setup::automatic_nodes::target;
 
 /// One boundary as the scene gives it.
@@ -53,15 +53,26 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
     tank.chain(obstacles).chain(links)
 }
 
+/// The outlines of the same, without their nodes.
+#[cfg(feature = "alloc")]
+pub(crate) fn shapes<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = (Place, Shape<'a, R>)> {
+    let tank = scene.tank().into_iter().map(|w| (Place::Tank, w.shape));
+    let obstacles = (0..scene.obstacle_count()).filter_map(|i| Some((Place::Obstacle(i), scene.obstacle(i)?.shape)));
+    tank.chain(obstacles).chain(each_link(scene).map(|(b, l, link)| (Place::Link(b, l), link.shape)))
+}
+
 /// The first boundary before boundary `i` whose compiled outline, nodes and self block serve for it as well, if any: a link
-/// of the same shape, nodes and centre of mass.
+/// of the same shape, nodes and centre of mass. O(links).
 pub(crate) fn twin_of<R: Real, S: Description<R>>(scene: &S, i: usize, item: &Item<'_, R>) -> Option<usize> {
-    let same = |other: &Item<'_, R>| {
-        other.link.is_some()
-            && item.link.is_some()
-            && other.shape == item.shape
-            && other.nodes == item.nodes
-            && other.centre == item.centre
+    let own = item.link?;
+    let centre = |link: &Link<'_, R>| match link.mass {
+        Mass::Density(_) => [R::zero(); 2],
+        Mass::Given { centre_of_mass, .. } => centre_of_mass,
     };
-    items(scene).take(i).position(|other| same(&other))
+    let (_, _, link) = each_link(scene).nth(own)?;
+    // What is given alike is chosen alike; a given count may be what another gets by itself, and is compiled again.
+    let same =
+        |other: &Link<'_, R>| other.nodes == link.nodes && other.shape == link.shape && centre(other) == centre(&link);
+    let twin = each_link(scene).take(own).position(|(_, _, other)| same(&other))?;
+    Some(i.checked_sub(own)? + twin)
 }

@@ -8,7 +8,7 @@ use crate::model::{CoordinateRecord, LinkRecord, Model, ModelHead};
 use crate::scene::Description;
 use crate::setup::automatic_nodes::{MOST_CHECKED, Resolved, automatic, target};
 use crate::setup::compile::ModelMemory;
-use crate::setup::items::items;
+use crate::setup::items::shapes;
 use crate::simulation::sim::{Sim, SimHead};
 use crate::simulation::state::Method;
 use alloc::{sync::Arc, vec::Vec};
@@ -29,8 +29,10 @@ impl<R: Real> ModelBuf<R> {
     /// # Errors
     /// As [`Model::init`]; `OutOfMemory` with the bytes.
     pub fn new(scene: &impl Description<R>) -> Result<Self> {
-        let mut model =
-            if automatic(scene) { ModelBuf::compiled(&Resolved::of(scene)?) } else { ModelBuf::compiled(scene) }?;
+        let mut model = match Resolved::tried(scene)? {
+            (_, Some(tried)) => tried,
+            (resolved, None) => ModelBuf::compiled(&resolved)?,
+        };
         let ModelBuf { links, coordinates, boundaries, reals, .. } = &mut model;
         ModelMemory { links, coordinates, boundaries, reals }.look_at_points(scene)?;
         Ok(model)
@@ -64,11 +66,11 @@ impl<R: Real> ModelMemory<'_, R> {
     /// # Errors
     /// As [`Shape::outline_error`](crate::scene::Shape::outline_error).
     pub fn look_at_points(&mut self, scene: &impl Description<R>) -> Result<()> {
-        for (i, item) in items(scene).enumerate() {
-            let known = items(scene).take(i).position(|other| other.shape == item.shape);
+        for (i, (place, shape)) in shapes(scene).enumerate() {
+            let known = shapes(scene).take(i).position(|(_, other)| other == shape);
             let error = match known.and_then(|twin| self.boundaries.get(twin)) {
                 Some(twin) => twin.outline_error,
-                None => item.shape.outline_error().map_err(|e| e.at(item.place))?.unwrap_or(R::NAN),
+                None => shape.outline_error().map_err(|e| e.at(place))?.unwrap_or(R::NAN),
             };
             if let Some(record) = self.boundaries.get_mut(i) {
                 record.outline_error = error;
@@ -90,7 +92,15 @@ impl<'s, S> Resolved<'s, S> {
     where
         S: Description<R>,
     {
-        let mut best = Resolved { scene, factor: 1.0 };
+        Ok(Self::tried(scene)?.0)
+    }
+
+    /// The same with its model, if that was made.
+    fn tried<R: Real>(scene: &'s S) -> Result<(Self, Option<ModelBuf<R>>)>
+    where
+        S: Description<R>,
+    {
+        let mut best = (Resolved { scene, factor: 1.0 }, None);
         if !automatic(scene) {
             return Ok(best);
         }
@@ -104,13 +114,16 @@ impl<'s, S> Resolved<'s, S> {
             if attempt.total() > MOST_CHECKED {
                 break;
             }
-            let sim = SimBuf::new(Arc::new(ModelBuf::compiled(&attempt)?), Method::Rk4 { step: R::one() });
+            let model = Arc::new(ModelBuf::compiled(&attempt)?);
             // What keeps a simulation from starting is told when one is made.
-            let error = sim.and_then(|mut sim| sim.view().resolution()).map_or(R::zero(), |r| r.bound());
+            let error = SimBuf::new(model.clone(), Method::Rk4 { step: R::one() })
+                .and_then(|mut sim| sim.view().resolution())
+                .map_or(R::zero(), |r| r.bound());
             // What more nodes do not halve is rounding, or takes more than there may be.
             in_vain = if error > R::HALF * least { in_vain + 1 } else { 0 };
             if error < least {
-                (best, least) = (Resolved { scene, factor }, error);
+                // The simulation that shared it is gone.
+                (best, least) = ((attempt, Arc::into_inner(model)), error);
             }
             if least <= asked || in_vain == 2 {
                 break;

@@ -43,6 +43,9 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         record.nodes = item.nodes;
         record.circulation = item.circulation;
         record.pose = item.pose;
+        if item.link.is_none() {
+            record.pose.origin = item.pose.place(item.shape.frame());
+        }
         if twin.is_some() {
             continue;
         }
@@ -89,15 +92,13 @@ fn list_ladders<R: Real>(record: &mut BoundaryRecord<R>, shape: &Shape<'_, R>, s
     let own = part(own, 0, record.slots.store_len);
     let (outline, ladders_at, tips_at) = (record.outline, record.slots.ladders_at, record.slots.tips_at);
     (record.ladders, record.tips) = (0, 0);
-    outline.each_ladder(own, |l| {
-        if record.ladders < most_ladders {
+    outline.each_feature(own, |ladder, tip| {
+        if let Some(l) = ladder.filter(|_| record.ladders < most_ladders) {
             copy(part_mut(lists, ladders_at + 3 * record.ladders, 3), &[l.t, l.beta, l.top]);
             record.ladders += 1;
         }
-    });
-    outline.each_tip(own, |t| {
         if record.tips < most_tips {
-            put(lists, tips_at + record.tips, t);
+            put(lists, tips_at + record.tips, tip);
             record.tips += 1;
         }
     });

@@ -9,7 +9,7 @@
 use crate::base::complex::{Complex, cabs, complex, dot};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
-use crate::geometry::curve::polyline::{cross, distinct};
+use crate::geometry::curve::polyline::{cross, distinct, frame};
 use crate::scene::Corners;
 
 /// r as a part of the outline's size; at least 512 roundings.
@@ -38,6 +38,8 @@ pub(super) struct Kinked<'a, R> {
     /// Corners that are given increase: they are found by bisection.
     sorted: bool,
     size: R,
+    /// The origin of their frame.
+    from: Complex<R>,
 }
 
 /// One side of a corner.
@@ -65,7 +67,7 @@ impl<'a, R: Real> Kinked<'a, R> {
         let p = |k: usize| points.get(k).map_or(Complex::default(), |[x, y]| complex(*x, *y));
         let size = (0..points.len()).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0))));
         let sorted = matches!(corners, Corners::At(list) if list.iter().zip(list.iter().skip(1)).all(|(a, b)| a <= b));
-        Kinked { points, corners, given, sorted, size }
+        Kinked { points, corners, given, sorted, size, from: frame(points) }
     }
 
     /// Corners given are points of the curve. Errors: `OutOfRange` with the number.
@@ -89,7 +91,7 @@ impl<'a, R: Real> Kinked<'a, R> {
     }
 
     pub(super) fn point(&self, i: usize) -> Complex<R> {
-        self.points.get(i).map_or(Complex::default(), |[x, y]| complex(*x, *y))
+        self.points.get(i).map_or(Complex::default(), |[x, y]| complex(*x, *y) - self.from)
     }
 
     /// Cosine and sine, times a positive number, of the turn at a point.
@@ -104,7 +106,7 @@ impl<'a, R: Real> Kinked<'a, R> {
         let (first, last) = (0, self.points.len().saturating_sub(1));
         match self.given.get(k) {
             Some([x, y]) if k > last => {
-                let far = |i: usize| cabs(complex(*x, *y) - self.point(i));
+                let far = |i: usize| cabs(complex(*x, *y) - self.from - self.point(i));
                 if far(last) < far(first) { last } else { first }
             }
             _ => k,

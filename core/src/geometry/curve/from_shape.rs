@@ -4,7 +4,7 @@
 
 use super::corners::Kinked;
 use super::polygon::{self, CORNER};
-use super::polyline::{area, boxes_len, cross, crossing, distinct, point, straight};
+use super::polyline::{area, boxes_len, cross, crossing, distinct, frame, point, straight};
 use super::{Curve, Ellipse, Kind, Outline, through_points};
 use crate::base::complex::{Complex, cabs, dot};
 use crate::base::memory::{part_mut, put};
@@ -26,23 +26,29 @@ const TOUCH: f64 = 1e-3;
 /// The same between the straight flanks of a polygon, which may be thin.
 const FLANKS: f64 = 1e-6;
 
+/// |curvature| and |γ′| where the derivatives are these.
+fn bend<R: Real>([_, d, dd]: [Complex<R>; 3]) -> [R; 2] {
+    let speed = cabs(d);
+    [cross(d, dd).abs() / (speed * speed * speed), speed]
+}
+
 /// Parameters of the sharpest bends of a sampled curve, with γ's scale there: local maxima of |curvature| k with
-/// k P/2π > 2, ladder scale 1/(k |γ′|).
-fn bends<'a, R: Real>(curve: &'a Curve<'_, R>, samples: usize, perimeter: R) -> impl Iterator<Item = Ladder<R>> + 'a {
+/// k P/2π > 2, ladder scale 1/(k |γ′|). `bend` gives |curvature| and |γ′| at a sample, periodically.
+fn bends<'a, R: Real>(
+    bend: &'a dyn Fn(usize) -> [R; 2],
+    samples: usize,
+    perimeter: R,
+) -> impl Iterator<Item = Ladder<R>> + 'a {
     let step = R::TAU / R::count(samples);
-    let bend = move |i: usize| {
-        let [_, d, dd] = curve.jet_real(step * R::count(i));
-        let speed = cabs(d);
-        (cross(d, dd).abs() / (speed * speed * speed), speed)
-    };
     let (mut before, mut here) = (bend(samples.saturating_sub(1)), bend(0));
     (0..samples).filter_map(move |i| {
-        let ((a, _), (b, speed)) = (before, here);
+        let ([a, _], [b, speed]) = (before, here);
         let next = bend(i + 1);
         (before, here) = (here, next);
-        let sharp = b > a && b >= next.0 && b * perimeter > R::TAU * R::TWO;
+        let [c, _] = next;
+        let sharp = b > a && b >= c && b * perimeter > R::TAU * R::TWO;
         // Vertex of the parabola through three values.
-        let shift = (a - next.0) / (a - b - b + next.0) * R::HALF;
+        let shift = (a - c) / (a - b - b + c) * R::HALF;
         let floor = R::lit(TOP / 2187.0 * 1.01);
         sharp.then(|| Ladder {
             t: (R::count(i) + shift) * step,
@@ -89,49 +95,33 @@ fn rectangle<R: Real>(width: R, height: R) -> [[R; 2]; 4] {
 }
 
 impl<R: Real> Outline<R> {
-    /// Visits the permanent ladders, in the order in which the grading was made of them.
-    pub(crate) fn each_ladder(&self, store: &[R], mut visit: impl FnMut(Ladder<R>)) {
+    /// Visits what nodes gather at: permanent ladders, in the order in which the grading was made of them, and parameters of tips (curvature
+    /// times perimeter above 4π) and corners.
+    pub(crate) fn each_feature(&self, store: &[R], mut visit: impl FnMut(Option<Ladder<R>>, R)) {
         match self.kind.curve(store) {
-            Curve::Polygon(polygon) => polygon.ladders().for_each(visit),
-            Curve::Fourier(_) if self.rungs > 0 => {
-                let mut room = self.rungs;
-                self.each_bend(store, |ladder| {
-                    if ladder.count() <= room {
-                        room -= ladder.count();
-                        visit(ladder);
-                    }
-                });
-            }
-            _ => (),
-        }
-    }
-
-    /// Visits the parameters of tips (curvature times perimeter above 4π) and corners.
-    pub(crate) fn each_tip(&self, store: &[R], mut visit: impl FnMut(R)) {
-        match self.kind {
-            Kind::Ellipse(e) => {
+            Curve::Ellipse(e) => {
                 let (long, short) = (e.a.max(e.b), e.a.min(e.b));
                 if long / (short * short) * e.properties().perimeter > R::TAU * R::TWO {
                     let first = if e.a > e.b { R::zero() } else { R::PI * R::HALF };
-                    visit(first);
-                    visit(first + R::PI);
+                    visit(None, first);
+                    visit(None, first + R::PI);
                 }
             }
-            Kind::Polygon { .. } => {
-                if let Curve::Polygon(polygon) = self.kind.curve(store) {
-                    polygon.ladders().for_each(|l| visit(l.t));
-                }
+            Curve::Polygon(polygon) => polygon.ladders().for_each(|l| visit(Some(l), l.t)),
+            Curve::Fourier(_) => {
+                let curve = self.kind.curve(store);
+                let step = R::TAU / R::count(self.samples.max(1));
+                let bend = |i: usize| bend(curve.jet_real(step * R::count(i)));
+                let mut room = self.rungs;
+                bends(&bend, self.samples, self.perimeter).for_each(|ladder| {
+                    let fits = self.rungs > 0 && ladder.count() <= room;
+                    if fits {
+                        room -= ladder.count();
+                    }
+                    visit(fits.then_some(ladder), ladder.t);
+                });
             }
-            Kind::Fourier { .. } => self.each_bend(store, |l| visit(l.t)),
         }
-    }
-
-    fn each_bend(&self, store: &[R], visit: impl FnMut(Ladder<R>)) {
-        let curve = self.kind.curve(store);
-        let step = R::TAU / R::count(self.samples.max(1));
-        let perimeter =
-            (0..self.samples).fold(R::zero(), |p, i| p + cabs(curve.jet_real(step * R::count(i))[1]) * step);
-        bends(&curve, self.samples, perimeter).for_each(visit);
     }
 }
 
@@ -215,6 +205,14 @@ impl<R: Real> Shape<'_, R> {
         self.sizes().map(|s| (s.ladders, s.tips))
     }
 
+    /// The origin of the compiled outline's frame in the shape's drawing frame: not its own origin where the outline is far from that.
+    pub(crate) fn frame(&self) -> Complex<R> {
+        match *self {
+            Shape::Polygon { vertices: points, .. } | Shape::Curve { points, .. } => frame(distinct(points)),
+            _ => Complex::default(),
+        }
+    }
+
     /// Validates the shape and writes its curve and grading into `store`.
     ///
     /// Corner radius: that of an arc of the same effect ([`Polygon`](super::Polygon)); `None` is [`SHARP`](super::SHARP)
@@ -241,7 +239,7 @@ impl<R: Real> Shape<'_, R> {
         }
         match *self {
             Shape::Ellipse { a, b } => {
-                Ok((Outline { kind: Kind::Ellipse(Ellipse { a, b }), rungs: 0, samples: 0 }, Status::Ok))
+                Ok((Outline { kind: Kind::Ellipse(Ellipse { a, b }), ..Outline::default() }, Status::Ok))
             }
             Shape::Star { radius, amplitude, lobes } => {
                 let half = radius * amplitude * R::HALF;
@@ -250,7 +248,11 @@ impl<R: Real> Shape<'_, R> {
                     put(store, 2 * k + 1, R::zero());
                 }
                 let kind = Kind::Fourier { centre: R::one(), stride: R::count(lobes), down: 1, count: 3 };
-                Ok((Outline { kind, rungs: 0, samples: lobes.saturating_mul(32) }, Status::Ok))
+                let samples = lobes.saturating_mul(32);
+                let (curve, step) = (kind.curve(store), R::TAU / R::count(samples.max(1)));
+                let perimeter =
+                    (0..samples).fold(R::zero(), |p, i| p + cabs(curve.jet_real(step * R::count(i))[1]) * step);
+                Ok((Outline { kind, rungs: 0, samples, perimeter }, Status::Ok))
             }
             Shape::Rectangle { width, height, radius } => {
                 let perimeter = polygon::write_rectangle(width, height, radius, store)?;
@@ -259,7 +261,8 @@ impl<R: Real> Shape<'_, R> {
             Shape::Polygon { vertices, radius } => {
                 let clockwise = polygon::check(vertices, scratch)?;
                 let n = vertices.len();
-                let perimeter = polygon::write(turned(vertices, clockwise), n, radius, store)?;
+                let (vertex, from) = (turned(vertices, clockwise), frame(vertices));
+                let perimeter = polygon::write(|k| vertex(k) - from, n, radius, store)?;
                 let outline = grade_corners(n, perimeter, radius, store, scratch)?;
                 Ok((outline, if clockwise { Status::OutlineReversed } else { Status::Ok }))
             }
@@ -281,7 +284,7 @@ impl<R: Real> Shape<'_, R> {
                 let modes = through_points::write(&p, n, &mut memory, store)?;
                 let kind = Kind::Fourier { centre: R::one(), stride: R::one(), down: modes.down, count: modes.count };
                 let samples = through_points::samples(n);
-                let outline = grade_bends(kind, samples, n, sizes.rungs, memory.samples, store)?;
+                let outline = grade_bends(kind, n, sizes.rungs, [memory.samples, memory.roots], store)?;
                 if let Some((_, j)) = crossing(memory.samples, memory.boxes, R::zero(), R::lit(TOUCH)) {
                     let at = through_points::point_before(memory.knots, n, j);
                     let own = if clockwise && at > 0 { n.saturating_sub(at) } else { at };
@@ -378,36 +381,39 @@ fn points_given<R: Real>(all: &'static str, one: &'static str, points: &[[R; 2]]
     length(one, size).map_err(|e| if size > R::zero() { e.of(one, far as f64) } else { e.of(one, 1.0) })
 }
 
-/// Grades a curve through points at its bends, convex and concave; leaves its samples in `positions`.
+/// Grades a curve through points at its bends, convex and concave; leaves its samples in `positions`, their curvatures and speeds in `shape`.
 ///
 /// Stars are not graded: among ten bends or so the ladders compete, and the polar angle already resolves them
 /// (0.3, 5 lobes alone, 48 nodes: added mass to 1e-6 as against 1e-3).
 fn grade_bends<R: Real>(
     kind: Kind<R>,
-    samples: usize,
     points: usize,
     most: usize,
-    positions: &mut [R],
+    [positions, shape]: [&mut [R]; 2],
     store: &mut [R],
 ) -> Result<Outline<R>> {
     let (own, graded) = store.split_at_mut_checked(kind.len()).ok_or(Status::MemoryTooSmall)?;
     let curve = kind.curve(own);
+    let samples = through_points::samples(points);
     let step = R::TAU / R::count(samples);
     let mut perimeter = R::zero();
-    for i in 0..samples {
-        let [x, d, _] = curve.jet_real(step * R::count(i));
+    let places = positions.as_chunks_mut::<2>().0.iter_mut().zip(shape.as_chunks_mut::<2>().0);
+    for (i, (place, shape)) in places.enumerate() {
+        let jet = curve.jet_real(step * R::count(i));
+        let [x, d, _] = jet;
         perimeter += cabs(d) * step;
-        put(positions, 2 * i, x.re);
-        put(positions, 2 * i + 1, x.im);
+        (*place, *shape) = ([x.re, x.im], bend(jet));
     }
+    let shape = shape.as_chunks::<2>().0;
+    let bend = |i: usize| shape.get(if i < samples { i } else { i - samples }).copied().unwrap_or([R::NAN; 2]);
     let mut room = most;
-    let ladders = bends(&curve, samples, perimeter).take(points).take_while(move |ladder| {
+    let ladders = bends(&bend, samples, perimeter).take(points).take_while(move |ladder| {
         let fits = ladder.count() <= room;
         room = room.saturating_sub(ladder.count());
         fits
     });
     let rungs = write_grading(ladders, graded)?;
-    Ok(Outline { kind, rungs, samples })
+    Ok(Outline { kind, rungs, samples, perimeter })
 }
 
 /// Grades a polygon at its corners and makes sure that rounding has not tangled it.
@@ -424,7 +430,7 @@ fn grade_corners<R: Real>(
         return Err(Status::Internal.into());
     };
     let rungs = write_grading(curve.ladders(), graded)?;
-    let outline = Outline { kind, rungs, samples: 0 };
+    let outline = Outline { kind, rungs, ..Outline::default() };
     let samples = n.max(4) * PER_CORNER;
     let (positions, boxes) = scratch.split_at_mut_checked(2 * samples).ok_or(Status::MemoryTooSmall)?;
     let mut points = positions.as_chunks_mut::<2>().0.iter_mut();

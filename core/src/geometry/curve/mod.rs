@@ -167,14 +167,20 @@ impl<R: Real> Kind<R> {
 pub struct Outline<R> {
     kind: Kind<R>,
     rungs: usize,
-    /// Samples that find the bends of a Fourier sum.
+    /// Samples that find the bends of a Fourier sum, and the length of the outline by them.
     samples: usize,
+    perimeter: R,
 }
 
 impl<R: Real> Default for Outline<R> {
     /// The unit circle.
     fn default() -> Self {
-        Outline { kind: Kind::Ellipse(Ellipse { a: R::one(), b: R::one() }), rungs: 0, samples: 0 }
+        Outline {
+            kind: Kind::Ellipse(Ellipse { a: R::one(), b: R::one() }),
+            rungs: 0,
+            samples: 0,
+            perimeter: R::zero(),
+        }
     }
 }
 

@@ -6,6 +6,8 @@ use crate::base::complex::{Complex, cabs, complex, dot, perp};
 use crate::base::memory::{at, put};
 use crate::base::scalar::Real;
 
+/// Sizes of an outline from which on it is far.
+const FAR: f64 = 16.0;
 /// Segments that share a bounding box.
 const BLOCK: usize = 16;
 
@@ -22,6 +24,15 @@ pub(super) fn point<R: Real>(points: &[R], i: usize) -> Complex<R> {
 /// The number after `i` in a cycle of `n`.
 pub(super) const fn after(i: usize, n: usize) -> usize {
     if i.saturating_add(1) < n { i + 1 } else { 0 }
+}
+
+/// Where the frame of a compiled outline has its origin in the drawing: a far one keeps the first point near it. Differences of points so far
+/// from the drawing's origin are exact.
+pub(super) fn frame<R: Real>(points: &[[R; 2]]) -> Complex<R> {
+    let p = |[x, y]: &[R; 2]| complex(*x, *y);
+    let Some(first) = points.first().map(p) else { return Complex::default() };
+    let size = points.iter().fold(R::zero(), |l, q| l.max(cabs(p(q) - first)));
+    if cabs(first) > size * R::lit(FAR) { first } else { Complex::default() }
 }
 
 /// `a × b`.

@@ -517,7 +517,7 @@ fn ellipses_have_tips_where_curvature_times_perimeter_exceeds_4_pi() {
         for (a, b) in [(aspect, 1.0), (0.2, 0.2 * aspect)] {
             let ellipse = compile(Shape::Ellipse { a, b });
             let mut tips = Vec::new();
-            ellipse.outline.each_tip(&ellipse.store, |t| tips.push(t));
+            ellipse.outline.each_feature(&ellipse.store, |_, t| tips.push(t));
             let step = f64::TAU / 4096.0;
             let perimeter: f64 = (0..4096)
                 .map(|k| {
