@@ -266,6 +266,14 @@ impl SceneFile {
                 format!("between two rows more steps are needed than the {STEP_LIMIT} allowed")
             }
             (Place::Scene, None) => error.status.text().to_owned(),
+            (place, None) if error.status == Status::BadShape && matches!(error.what, "point" | "vertex") => {
+                return format!(
+                    "{}: its {} {} repeats the one before it",
+                    self.name_of(place),
+                    error.what,
+                    error.value
+                );
+            }
             (place, None) => format!("{}: {}", self.name_of(place), error.status.text()),
             (place, Some(other)) => {
                 format!("{} and {}: {}", self.name_of(place), self.name_of(other), error.status.text())
@@ -331,8 +339,8 @@ impl SceneFile {
             }
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
             Status::SelfIntersection => Some(
-                "list the points in order along the outline; a curve through uneven points may cross itself where the polygon does not: \
-                 give more points there, or `polygon`"
+                "list the points in order along the outline; a curve through uneven points may cross itself where the polygon does not, as \
+                 beside a long side without points: give it some, name its ends in `corners`, or write `polygon`"
                     .to_owned(),
             ),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
@@ -341,7 +349,7 @@ impl SceneFile {
             Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
             Status::BadShape if error.what == "point" || error.what == "vertex" => {
-                Some("it repeats the one before it, counted from 0: leave one out".to_owned())
+                Some("leave one of the two out (points count from 0)".to_owned())
             }
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
             _ => None,

@@ -80,7 +80,7 @@ fn noisy(points: &[[f64; 2]], size: f64) -> Points {
 fn ellipses() {
     for b in [1.0, 0.5, 0.1, 0.02] {
         let known = exact(Shape::Ellipse { a: 1.0, b });
-        for n in [6, 8, 10, 12, 16, 24, 32, 48, 100] {
+        for n in [6, 7, 8, 9, 10, 12, 13, 16, 24, 32, 48, 100] {
             for shift in [0.0, 0.5] {
                 let points: Points = even(n, shift).map(ellipse(b)).collect();
                 report(&format!("ellipse 1:{b} even angles shift {shift}"), &known, &points, Corners::Auto);
@@ -225,6 +225,47 @@ fn sections() {
     }
 }
 
+/// Straight sides without points beside dense arcs, as drawings export them, and arcs of which points were lost.
+fn gaps() {
+    let arc = |x: f64, y: f64, r: f64, [from, to]: [f64; 2], n: usize| {
+        (0..n)
+            .map(move |k| from + (to - from) * k as f64 / (n - 1) as f64)
+            .map(move |t| [x + r * t.cos(), y + r * t.sin()])
+    };
+    let half = PI / 2.0;
+    for n in [9, 33, 100, 300] {
+        for c in [0.5, 1.0, 1.25] {
+            let cap =
+                |side: f64| arc(side * c, 0.0, 0.5, if side > 0.0 { [-half, half] } else { [half, 3.0 * half] }, n);
+            let points: Points = cap(1.0).chain(cap(-1.0)).collect();
+            let sides = |m: usize| {
+                let side = move |s: f64| (1..m).map(move |k| [s * c * (1.0 - 2.0 * k as f64 / m as f64), s * 0.5]);
+                arc(c, 0.0, 0.5, [-half, half], 200)
+                    .chain(side(1.0))
+                    .chain(arc(-c, 0.0, 0.5, [half, 3.0 * half], 200))
+                    .chain(side(-1.0))
+                    .collect::<Points>()
+            };
+            report(
+                &format!("stadium centres {c} empty sides"),
+                &exact(Shape::curve(&sides(128))),
+                &points,
+                Corners::Auto,
+            );
+        }
+        let shaft = |a: f64, n: usize| arc(0.0, 0.0, 1.0, [a, TAU - a], n).collect::<Points>();
+        for a in [0.7, 0.3] {
+            let known = exact(Shape::Curve { points: &shaft(a, 400), corners: Corners::At(&[0, 399]) });
+            report(&format!("shaft with a flat of {a} rad"), &known, &shaft(a, n), Corners::Auto);
+        }
+    }
+    let known = exact(Shape::Ellipse { a: 1.0, b: 0.5 });
+    for (n, lost) in [(100, 10), (100, 20), (400, 40)] {
+        let points: Points = even(n, 0.0).skip(lost).map(ellipse(0.5)).collect();
+        report(&format!("ellipse 1:0.5 without {lost} of {n}"), &known, &points, Corners::Auto);
+    }
+}
+
 fn main() {
     println!("outline,points,estimate,mass_error,area_error");
     ellipses();
@@ -233,4 +274,5 @@ fn main() {
     plates();
     arcs();
     sections();
+    gaps();
 }

@@ -172,6 +172,26 @@ fn points_that_leave_the_outline_uncertain_are_noticed_and_those_that_tell_it_ar
     ] {
         rough.push((plate(height, steps).0, corners, square(height)));
     }
+    // Sides without points beside dense arcs: a stadium, whose area is known, and a disc with a flat.
+    for n in [9, 40, 60] {
+        let cap = |x: f64, from: f64| {
+            (0..n)
+                .map(move |k| PI * (from + f64::from(k) / f64::from(n - 1)))
+                .map(move |t| [x + 0.5 * t.cos(), 0.5 * t.sin()])
+        };
+        let points: Vec<_> = cap(1.0, -0.5).chain(cap(-1.0, 0.5)).collect();
+        let estimate = Shape::curve(&points).outline_error().unwrap().unwrap();
+        let area = mass_and_area(Shape::curve(&points)).unwrap()[2];
+        let error = (area / (2.0 + PI / 4.0) - 1.0).abs();
+        println!("stadium: estimate {estimate:.1e}, error {error:.1e}");
+        assert!(error > 1e-2 && estimate > error && estimate < 10.0 * error, "{n}: {estimate:e} {error:e}");
+        for half in [0.3, 0.7] {
+            let turn = |k: i32| half + (TAU - 2.0 * half) * f64::from(k) / f64::from(n - 1);
+            let flat: Vec<_> = (0..n).map(|k| [turn(k).cos(), turn(k).sin()]).collect();
+            let estimate = Shape::curve(&flat).outline_error().unwrap().unwrap();
+            assert!(estimate > 1e-3, "{n} {half}: {estimate:e}");
+        }
+    }
     for (points, corners, exact) in rough {
         let (estimate, error) = estimated(&points, corners, exact);
         println!("{} points: estimate {estimate:.1e}, error {error:.1e}", points.len());

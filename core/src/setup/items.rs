@@ -14,7 +14,9 @@ pub(crate) struct Item<'a, R> {
     pub(crate) place: Place,
     pub(crate) link: Option<usize>,
     pub(crate) shape: Shape<'a, R>,
+    /// Chosen where none are given.
     pub(crate) nodes: usize,
+    given: usize,
     /// Centre of mass from the centroid; `None` for walls (frame = drawing frame).
     pub(crate) centre: Option<[R; 2]>,
     pub(crate) circulation: R,
@@ -32,6 +34,7 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
         link: None,
         shape: w.shape,
         nodes: nodes(w.nodes, &w.shape),
+        given: w.nodes,
         centre: None,
         circulation: w.circulation,
         pose: Pose::new(w.position[0], w.position[1], w.angle),
@@ -43,6 +46,7 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
         link: Some(i),
         shape: link.shape,
         nodes: nodes(link.nodes, &link.shape),
+        given: link.nodes,
         centre: Some(match link.mass {
             Mass::Density(_) => [R::zero(); 2],
             Mass::Given { centre_of_mass, .. } => centre_of_mass,
@@ -69,10 +73,10 @@ pub(crate) fn twin_of<R: Real, S: Description<R>>(scene: &S, i: usize, item: &It
         Mass::Density(_) => [R::zero(); 2],
         Mass::Given { centre_of_mass, .. } => centre_of_mass,
     };
-    let (_, _, link) = each_link(scene).nth(own)?;
-    // What is given alike is chosen alike; a given count may be what another gets by itself, and is compiled again.
-    let same =
-        |other: &Link<'_, R>| other.nodes == link.nodes && other.shape == link.shape && centre(other) == centre(&link);
+    // What is given alike is chosen alike.
+    let same = |other: &Link<'_, R>| {
+        other.nodes == item.given && other.shape == item.shape && Some(centre(other)) == item.centre
+    };
     let twin = each_link(scene).take(own).position(|(_, _, other)| same(&other))?;
     Some(i.checked_sub(own)? + twin)
 }
