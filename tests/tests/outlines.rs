@@ -173,7 +173,7 @@ fn points_that_leave_the_outline_uncertain_are_noticed_and_those_that_tell_it_ar
         rough.push((plate(height, steps).0, corners, square(height)));
     }
     // Sides without points beside dense arcs: a stadium, whose area is known, and a disc with a flat.
-    for n in [9, 40, 60] {
+    for n in [9, 33] {
         let cap = |x: f64, from: f64| {
             (0..n)
                 .map(move |k| PI * (from + f64::from(k) / f64::from(n - 1)))
