@@ -237,6 +237,10 @@ fn the_estimate_falls_with_noise_and_does_not_hang_on_place_size_or_direction() 
     for other in [moved, backwards, later] {
         assert!((estimate(&other) / first - 1.0).abs() < 0.2, "{first:e} {:e}", estimate(&other));
     }
+    // What makes no outline has no estimate.
+    let refused = |points: &[[f64; 2]]| Shape::curve(points).outline_error().unwrap_err().status;
+    assert_eq!(refused(&[[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]]), Status::NotFinite);
+    assert_eq!(refused(&points[..2]), Status::BadShape);
     // One point twice does not make a side shorter.
     let repeated: Vec<_> = points.iter().chain(&points[..1]).copied().collect();
     assert_eq!(estimate(&repeated), first);

@@ -310,7 +310,7 @@ impl<R: Real> Shape<'_, R> {
     }
 
     /// Checks on the numbers alone.
-    fn validate(&self) -> Result<()> {
+    pub(super) fn validate(&self) -> Result<()> {
         match *self {
             Shape::Ellipse { a, b } => length("a", a).and(length("b", b)),
             Shape::Star { radius, amplitude, lobes } => {
