@@ -1,4 +1,5 @@
-//! The changes of all files, in an order that depends on a seed and on the files alone.
+//! The changes of all files, in an order that depends on a seed and on what each of them changes: where core is written
+//! anew, the rest of a sample stays as it was.
 
 use crate::find::{Mutant, mutants, without_tests};
 use std::collections::BTreeSet;
@@ -81,22 +82,39 @@ pub fn fold(hash: u64, bytes: &[u8]) -> u64 {
         .fold(hash ^ 0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-fn shuffle<T>(items: &mut [T], seed: u64) {
-    let mut state = seed;
-    for k in (1..items.len()).rev() {
-        // SplitMix64.
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = state;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^= x >> 31;
-        items.swap(k, (x % (k as u64 + 1)) as usize);
-    }
+/// Sorts by a hash of what is changed into what; equal changes of equal lines stay in their order.
+fn shuffle(all: &mut [Mutant], seed: u64) {
+    all.sort_by_cached_key(|m| {
+        let parts = [m.file.as_str(), &m.function, &m.code, &m.column.to_string(), &m.change()].join("\n");
+        mixed(fold(seed, parts.as_bytes()))
+    });
+}
+
+/// SplitMix64's last steps: every bit depends on every bit.
+fn mixed(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
 }
 
 #[cfg(test)]
 mod test {
-    use super::{folder_of, is_file_of};
+    use super::{folder_of, is_file_of, shuffle};
+    use crate::find::mutants;
+
+    #[test]
+    fn a_sample_keeps_what_is_not_written_anew() {
+        let order = |text: &str| {
+            let (mut all, _) = mutants("core/src/a.rs", text).unwrap();
+            shuffle(&mut all, 1);
+            all.iter().map(|m| format!("{} {}", m.function, m.change())).collect::<Vec<String>>()
+        };
+        let before = order("fn f(x: f64) -> f64 {\n    g(x);\n    -x * 2.0 + x\n}\n");
+        let mut after =
+            order("fn h(y: f64) -> f64 {\n    y - 3.0\n}\nfn f(x: f64) -> f64 {\n    g(x);\n    -x * 2.0 + x\n}\n");
+        after.retain(|words| !words.starts_with('h'));
+        assert!(before.len() > 5 && before == after, "{before:?} {after:?}");
+    }
 
     #[test]
     fn modules_are_files_or_folders_beside_the_one_that_declares_them() {
