@@ -7,6 +7,7 @@ mod circulation;
 mod conservation;
 mod contact;
 mod defaults;
+mod derivatives;
 mod drives;
 mod driving;
 mod errata;

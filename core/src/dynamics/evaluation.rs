@@ -59,7 +59,7 @@ impl Dims {
 
 /// Leading dimension of the boundary system: an odd multiple of a cache line keeps columns from falling on the same lines,
 /// and each begins where a line begins if the first does.
-fn leading(unknowns: usize) -> usize {
+pub(crate) fn leading(unknowns: usize) -> usize {
     if unknowns == 0 { 0 } else { (unknowns.div_ceil(8) | 1) * 8 }
 }
 

@@ -4,6 +4,8 @@ pub(crate) mod accelerations;
 pub(crate) mod added_mass;
 pub(crate) mod articulation;
 pub(crate) mod christoffel;
+#[cfg(feature = "derivatives")]
+pub(crate) mod derivatives;
 pub(crate) mod evaluation;
 pub(crate) mod forces;
 pub(crate) mod indicators;

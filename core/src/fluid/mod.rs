@@ -15,3 +15,5 @@ pub(crate) mod potentials;
 pub(crate) mod rotation;
 pub(crate) mod self_block;
 pub(crate) mod system;
+#[cfg(feature = "derivatives")]
+pub(crate) mod tangent_pass;

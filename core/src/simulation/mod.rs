@@ -1,5 +1,7 @@
 //! A model in motion: state, stepping, diagnostics.
 
+#[cfg(feature = "derivatives")]
+pub(crate) mod derivatives;
 pub(crate) mod diagnostics;
 mod drives;
 pub(crate) mod notices;

@@ -31,6 +31,16 @@ pub(crate) fn add_gradient<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, o
     }
 }
 
+/// Adds ∂²P/∂q² · 3n × 3n, column-major.
+#[cfg(feature = "derivatives")]
+pub(crate) fn add_hessian<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, out: &mut [R]) {
+    let (walls, g, n) = (model.head.plan.walls, model.head.gravity, 3 * model.links.len());
+    for (i, link) in model.links.iter().enumerate() {
+        let c = poses.get(walls + i).turned(link.centroid);
+        add(out, (3 * i + 2) * (n + 1), g * model.head.fluid_density * link.area * c.im);
+    }
+}
+
 /// ½ Σ m |v|² + I ω², J/m.
 pub(crate) fn kinetic_bodies<R: Real>(model: &Model<'_, R>, qd: &[R]) -> R {
     model.links.iter().enumerate().fold(R::zero(), |sum, (i, link)| {

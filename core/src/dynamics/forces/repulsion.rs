@@ -6,6 +6,11 @@
 //! Tested by `tests/gradients`, `tests/repulsion` (another quadrature), `tests/near_contact`, `tests/errata`.
 
 use crate::base::complex::{Complex, cabs, cis, complex};
+#[cfg(feature = "derivatives")]
+use crate::base::{
+    complex::{dot, perp},
+    memory::add,
+};
 use crate::base::scalar::Real;
 use crate::dynamics::forces::close_range;
 use crate::fluid::configuration::Configuration;
@@ -59,6 +64,26 @@ struct Pair<R> {
     error: R,
 }
 
+/// Visits (point, |dγ|) of the nodes of the inner integral: the boundary's own, or those of a place close by.
+#[inline(always)]
+fn each_inner<R: Real>(
+    source: &Source<'_, R>,
+    tables: &[R],
+    close: Option<(R, R)>,
+    mut visit: impl FnMut(Complex<R>, R),
+) {
+    match close {
+        Some((t, beta)) => close_range::each_node(&source.view.curve, tables, t, beta, |x, ds| {
+            visit(x - source.record.origin, ds);
+        }),
+        None => {
+            for (x, dx) in source.nodes.points().zip(source.nodes.tangents()) {
+                visit(x, cabs(dx) * source.nodes.step);
+            }
+        }
+    }
+}
+
 /// Visits every pair once. The inner integral takes the second boundary's nodes, or nodes of its own where the point is close.
 fn each_pair<R: Real>(c: &Configuration<'_, R>, alpha: R, mut visit: impl FnMut(Pair<R>)) {
     let tables = c.model.close_range();
@@ -72,16 +97,7 @@ fn each_pair<R: Real>(c: &Configuration<'_, R>, alpha: R, mut visit: impl FnMut(
             let close = |z| if tables.is_empty() { None } else { inner.footprint(z) };
             let sums_at = |z, close: Option<(R, R)>| {
                 let mut sums = Sums::default();
-                match close {
-                    Some((t, beta)) => close_range::each_node(&inner.view.curve, tables, t, beta, |x, ds| {
-                        sums.add(z, x - b.origin, ds, alpha);
-                    }),
-                    None => {
-                        for (x, dx) in b_nodes.points().zip(b_nodes.tangents()) {
-                            sums.add(z, x, cabs(dx) * b_nodes.step, alpha);
-                        }
-                    }
-                }
+                each_inner(&inner, tables, close, |x, ds| sums.add(z, x, ds, alpha));
                 sums
             };
             let (mut energy, mut force, mut moment_a, mut moment_b) =
@@ -203,4 +219,52 @@ pub(crate) fn add_gradient<R: Real>(c: &Configuration<'_, R>, law: Repulsion<R>,
         size = size.max(p.size);
     });
     error / size
+}
+
+/// Adds ∂²V/∂q² · 3n × 3n, column-major, with the nodes of the inner integrals where they are:
+/// ε ΣΣ ds ds' [α (α + 2) |d|^(−α−4) (d·ḋ_a)(d·ḋ_b) − α |d|^(−α−2) (ḋ_a·ḋ_b + d·d̈_ab)]. O(N²), about five gradients.
+#[cfg(feature = "derivatives")]
+pub(crate) fn add_hessian<R: Real>(c: &Configuration<'_, R>, law: Repulsion<R>, out: &mut [R]) {
+    let (tables, alpha, rows) = (c.model.close_range(), law.alpha, 3 * c.model.links.len());
+    for (i, a, a_nodes) in c.each_boundary() {
+        for (j, b, b_nodes) in c.each_boundary().skip(i + 1) {
+            if a.link.is_none() && b.link.is_none() {
+                continue;
+            }
+            let source = c.pose(j);
+            let inner = Source { record: b, nodes: b_nodes, view: c.outline(j, b), table: &[] };
+            let shift = source.unturned(c.pose(i).origin - source.origin);
+            // Unit motions of the first boundary and of the second; linear parts in the world's directions, seen in the frame.
+            let [ex, ey] = [complex(R::one(), R::zero()), complex(R::zero(), R::one())].map(|e| source.unturned(e));
+            let mut sums = [[R::zero(); 6]; 6];
+            for (z, d) in targets(&a_nodes, c.pose(i), source).zip(a_nodes.tangents()) {
+                let (outer, arm) = (cabs(d) * a_nodes.step, z - shift);
+                let close = if tables.is_empty() { None } else { inner.footprint(z) };
+                each_inner(&inner, tables, close, |x, ds| {
+                    let d = z - x;
+                    let square = dot(d, d);
+                    let weight = inverse_power(square, alpha) * ds * outer * (law.epsilon * alpha) / square;
+                    let along = [ex, ey, perp(arm), -ex, -ey, -perp(x)];
+                    let parts = along.map(|e| dot(d, e));
+                    let second = (alpha + R::TWO) / square;
+                    for ((sums, e), p) in sums.iter_mut().zip(along).zip(parts) {
+                        for ((sum, f), q) in sums.iter_mut().zip(along).zip(parts) {
+                            *sum += weight * (second * p * q - dot(e, f));
+                        }
+                    }
+                    let [_, _, first, _, _, last] = &mut sums;
+                    first[2] += weight * dot(d, arm);
+                    last[5] -= weight * dot(d, x);
+                });
+            }
+            let coordinate = |k: usize| if k < 3 { a.link.map(|l| 3 * l + k) } else { b.link.map(|l| 3 * l + k - 3) };
+            for (p, sums) in sums.iter().enumerate() {
+                for (q, sum) in sums.iter().enumerate() {
+                    if let (Some(p), Some(q)) = (coordinate(p), coordinate(q)) {
+                        add(out, q * rows + p, *sum);
+                    }
+                }
+            }
+        }
+    }
 }

@@ -40,6 +40,8 @@ pub(crate) struct Preimage<R> {
     pub factor: Complex<R>,
     /// dx/dz.
     pub rate: Complex<R>,
+    /// The root of the curve is t_j + u with this u; NaN where it was read from memory, which does not keep it.
+    pub offset: Complex<R>,
 }
 
 impl<R: Real> Preimage<R> {
@@ -54,6 +56,7 @@ impl<R: Real> Preimage<R> {
                 tangent: complex(tr, ti),
                 factor: complex(fr, fi),
                 rate: complex(rr, ri),
+                offset: complex(R::NAN, R::NAN),
             }),
             _ => None,
         }

@@ -251,3 +251,26 @@ pub(crate) fn sums<R: Real>(pre: &Preimage<R>, table: &[R], [wx, wy]: [&[R]; 2])
     }
     [row.factor * weights, row.factor * pre.rate * slopes]
 }
+
+/// Visits every node k with the terms of D_ik = dW_ik/dz and of E_ik = dD_ik/dz for one target; `bend`: d²x/dz².
+pub(crate) fn each_slope<R: Real>(
+    pre: &Preimage<R>,
+    table: &[R],
+    nodes: usize,
+    bend: Complex<R>,
+    mut visit: impl FnMut(usize, Complex<R>, Complex<R>),
+) {
+    let (row, (cos, sin)) = (Row::of(pre, nodes), turned(table, nodes, pre.node));
+    let (q, square) = (complex(R::zero(), row.half), pre.rate * pre.rate);
+    for (first, skip) in blocks(cos.len()) {
+        let [re, im] = cotangents(row.tangent, cos, sin, first);
+        for i in skip..LANES.min(cos.len() - first) {
+            let cot = complex(re[i], im[i]);
+            let csc2 = cot * cot + R::one();
+            let slope = q * cot - csc2 * R::HALF;
+            let second = q * q * cot - q * csc2 + csc2 * cot * R::HALF;
+            let factor = row.factor * sign::<R>(first + i);
+            visit(first + i, factor * slope * pre.rate, factor * (second * square + slope * bend));
+        }
+    }
+}

@@ -64,20 +64,21 @@ pub(crate) struct Completed<R, const L: usize> {
     tangent: [[R; L]; 2],
     factor: [[R; L]; 2],
     rate: [[R; L]; 2],
+    offset: [[R; L]; 2],
 }
 
 impl<R: Real, const L: usize> Completed<R, L> {
     /// One of them; `None` where the pole term is lost in rounding.
     #[inline]
     pub(crate) fn get(&self, i: usize, nodes: usize) -> Option<Preimage<R>> {
-        let [tangent, factor, rate] =
-            [&self.tangent, &self.factor, &self.rate].map(|z| complex(at(&z[0], i), at(&z[1], i)));
+        let [tangent, factor, rate, offset] =
+            [&self.tangent, &self.factor, &self.rate, &self.offset].map(|z| complex(at(&z[0], i), at(&z[1], i)));
         let (height, node) = (at(&self.height, i), self.node.get(i).copied()?);
         let exponent = R::count(nodes) * height.abs() * R::HALF;
         let near = exponent < reach() && height != R::zero() && rate.re.is_finite() && rate.im.is_finite();
         let sign = if height < R::zero() { -R::one() } else { R::one() };
         let factor = if node.is_multiple_of(2) { factor } else { -factor };
-        near.then_some(Preimage { node, sign, tangent, factor, rate })
+        near.then_some(Preimage { node, sign, tangent, factor, rate, offset })
     }
 }
 
@@ -132,7 +133,8 @@ impl<R: Real> Source<'_, R> {
     pub(crate) fn complete<const L: usize>(&self, roots: &Roots<R, L>) -> Completed<R, L> {
         let [x, slope] = self.view.grading.difference(&roots.offset);
         let zero = [[R::zero(); L]; 2];
-        let mut out = Completed { node: roots.node, height: x[1], tangent: zero, factor: zero, rate: zero };
+        let (node, offset) = (roots.node, roots.offset.u);
+        let mut out = Completed { node, height: x[1], tangent: zero, factor: zero, rate: zero, offset };
         let half = R::count(self.nodes.t.len()) * R::HALF;
         let scale = R::HALF * R::PI / half;
         for i in 0..L {

@@ -231,6 +231,13 @@ impl<R: Real> OutlineView<'_, R> {
         self.node_of([t, slope, bend])
     }
 
+    /// d²s/dz² of the nodes' parameter as a function of the point z = γ(t + u), u complex: (s″ − s′ γ″/γ′)/γ′².
+    pub(crate) fn second_rate(&self, t: R, u: Complex<R>) -> Complex<R> {
+        let [_, first, second] = self.curve.jet(u + t);
+        let [slope, bend] = self.grading.slopes(t, u);
+        (bend - slope * second / first) / (first * first)
+    }
+
     /// The same from t, ds/dt and d²s/dt².
     fn node_of(&self, [t, slope, bend]: [R; 3]) -> Node<R> {
         let [x, first, second] = self.curve.jet_real(t);

@@ -10,6 +10,7 @@
 //!
 //! Tested by the tests at its end, `geometry/curve/tests.rs`.
 
+use crate::base::complex::{Complex, complex, csin_cos};
 use crate::base::memory::{at, part, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
@@ -180,6 +181,19 @@ impl<'a, R: Real> Grading<'a, R> {
         sum
     }
 
+    /// s′ and s″ at the complex parameter t + u.
+    pub(crate) fn slopes(&self, t: R, u: Complex<R>) -> [Complex<R>; 2] {
+        let mut sum = [complex(self.plain, R::zero()), Complex::default()];
+        for [place, _, weight, _, sh, half_sinh, _] in self.each() {
+            let v = t - place;
+            let (s, c) = csin_cos((u + (v - R::TAU * (v / R::TAU).round())) * R::HALF);
+            let m = s * s + sh * sh;
+            let slope = complex(weight * half_sinh, R::zero()) / m;
+            sum = [sum[0] + slope, sum[1] - slope * s * c / m];
+        }
+        sum
+    }
+
     /// The t in [0, 2π] at which the map takes the value `s` in [0, 2π], starting from `guess`.
     ///
     /// Newton's method inside a shrinking bracket. The best iterate is kept, so a converged one is never moved
@@ -238,7 +252,7 @@ impl<'a, R: Real> Grading<'a, R> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::base::complex::{Complex, cabs, cis, complex, csin_cos};
+    use crate::base::complex::{cabs, cis};
     use std::vec;
     use std::vec::Vec;
 

@@ -281,6 +281,16 @@ impl<R: Real> Factors<'_, R> {
         });
     }
 
+    /// Solves A x = b in place for each column of `b`, which has the matrix's leading dimension.
+    #[cfg(feature = "derivatives")]
+    pub(crate) fn solve_columns(&self, b: &mut [R]) {
+        exchange_all(b, self.ld, 0, self.pivots);
+        with_kernel!(Machine::here(), kernel => {
+            reduce(kernel, self.matrix(), self.ld, self.pivots.len(), 0, b);
+            substitute_back(kernel, self.matrix(), self.ld, 0, b);
+        });
+    }
+
     /// Solves U x = b in place for each column of `b`, which has the matrix's leading dimension or is one column.
     pub fn back_substitute(&self, b: &mut [R]) {
         with_kernel!(Machine::here(), kernel => substitute_back(kernel, self.matrix(), self.ld, 0, b));

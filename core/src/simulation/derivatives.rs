@@ -1,0 +1,60 @@
+//! Derivatives of the motion at the state shown.
+//!
+//! Tested by `tests/derivatives`.
+
+use crate::base::memory::copy;
+use crate::base::scalar::Real;
+use crate::base::status::{Error, Result, Status};
+use crate::dynamics::derivatives::{DerivativeDims, Derivatives, supported};
+use crate::fluid::tangent_pass::TangentScratch;
+use crate::model::Model;
+use crate::simulation::sim::Sim;
+
+impl<R: Real> Sim<'_, R> {
+    /// Reals of memory that [`Sim::force_derivatives`] and [`Sim::linearize`] take beside the simulation's own: about 15 n N for n links
+    /// with N nodes in all, and N times the nodes of the largest boundary.
+    ///
+    /// # Errors
+    /// `SizeOverflow`.
+    pub fn derivative_requirement(model: &Model<'_, R>) -> Result<usize> {
+        let dims = DerivativeDims::of(model);
+        let parts = [Derivatives::<R>::len(&dims), TangentScratch::<R>::len(&dims.longest)];
+        let sum = parts.into_iter().try_fold(0usize, |sum, len| sum.checked_add(len?));
+        sum.ok_or(Status::SizeOverflow.into())
+    }
+
+    /// Derivatives of the force r = M q̈ + F by positions and velocities at the state shown, for given accelerations `qdd` of the links
+    /// (3n, world): `position` = ∂r/∂q and `velocity` = ∂r/∂q̇, 3n × 3n each, column-major, in N, kg/s and so on per unit of the
+    /// coordinates. F is everything but inertia: the Christoffel force (2.15), weight and buoyancy (2.16), repulsion (5.1); not the
+    /// forces of joints. Exact derivatives of the discrete force with nodes that stay where they are in their outlines. `memory`:
+    /// [`Sim::derivative_requirement`]. The simulation does not change. About the price of one evaluation, and of one more if nothing was
+    /// asked at this state.
+    ///
+    /// # Errors
+    /// `Length`, `NotFinite`, `MemoryTooSmall`; `Unsupported` with the name of what has no derivatives: `circulation`,
+    /// `force formula` (the boundary formula). As [`Sim::energy`].
+    pub fn force_derivatives(&mut self, qdd: &[R], position: &mut [R], velocity: &mut [R], memory: &mut [R]) -> Result<()> {
+        let rows = self.rows();
+        for (given, needed) in [(qdd.len(), rows), (position.len(), rows * rows), (velocity.len(), rows * rows)] {
+            if given != needed {
+                return Err(Error::new(Status::Length).of("length", given as f64));
+            }
+        }
+        if !qdd.iter().all(|x| x.is_finite()) {
+            return Err(Status::NotFinite.into());
+        }
+        let model = self.model;
+        supported(&model)?;
+        let given = memory.len() as f64;
+        let short = |e: Error| if e.status == Status::MemoryTooSmall { e.of("length", given) } else { e };
+        let dims = DerivativeDims::of(&model);
+        let rest = &mut { memory };
+        let mut d = Derivatives::take(&dims, rest).map_err(short)?;
+        let mut s = TangentScratch::take(&dims.longest, rest).map_err(short)?;
+        self.evaluated()?;
+        self.evaluation.force_derivatives(&model, qdd, &mut d, &mut s);
+        copy(position, d.position);
+        copy(velocity, d.velocity);
+        Ok(())
+    }
+}
