@@ -3,6 +3,7 @@
 pub mod counted;
 pub mod faer;
 pub mod lapack;
+mod linearize;
 pub mod passing;
 pub mod rows;
 pub mod scenes;

@@ -6,7 +6,7 @@ use nekton_bench::passing::{Point, Scheme, points};
 use nekton_bench::rows::{Held, Row, rows};
 use std::process::ExitCode;
 
-const USAGE: &str = "usage: nekton-bench table | faer | guard | counted | repeat NAME CALLS";
+const USAGE: &str = "usage: nekton-bench table | rows PART | faer | guard | counted | repeat NAME CALLS";
 
 /// A value may leave what it must be by this much before the guard complains, and only if it does so each time.
 const SLACK: f64 = 1.15;
@@ -17,6 +17,19 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["table"] => with_lapack(table),
+        // The rows whose names have this part.
+        ["rows", part] => {
+            let lapack = match Lapack::load() {
+                Ok(lapack) => lapack,
+                Err(why) => {
+                    eprintln!("{why}");
+                    return ExitCode::FAILURE;
+                }
+            };
+            let chosen: Vec<Row> = rows().into_iter().filter(|row| row.name.contains(part)).collect();
+            lines(&lapack, &chosen);
+            ExitCode::SUCCESS
+        }
         // Lines of the table alone; of a program built with the feature `faer`.
         ["faer"] => with_lapack(|lapack| {
             println!("# {}", lapack.name);

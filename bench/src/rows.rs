@@ -1,6 +1,7 @@
 //! The rows of the table: what is measured against what, and what must come out.
 
 use crate::lapack::Lapack;
+use crate::linearize;
 use crate::passing;
 use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
 use crate::timing::{Measured, Turns};
@@ -295,6 +296,13 @@ pub fn rows() -> Vec<Row> {
     row("20 ellipses of 64 nodes / dgetrf(1280)", 1280, (1.0, 0.5), Held::Yes, Box::new(crowd));
     row("fixed walls with 3/4 of the nodes / moving walls", 256, (0.6, 0.45), Held::Yes, Box::new(|_| Ok(walls(64))));
     row("articulated body of 6 links / the links free", 224, (1.0, 0.8), Held::Yes, Box::new(|_| Ok(swimming(32))));
+    for (columns, rows) in [(2, 1), (2, 2), (4, 2)] {
+        let run = move |_: &Lapack| Ok(linearize::ellipses(columns, rows, 32));
+        let name = "linearization with its evaluation / evaluation";
+        row(name, 32 * columns * rows, (2.3, 2.0), Held::No, Box::new(run));
+    }
+    let name = "the same of a swimmer of 3 links, graded";
+    row(name, 96, (2.0, 1.8), Held::No, Box::new(|_| Ok(linearize::fish())));
     row("lone rigid body: one step of rk4 (s)", 64, (1e-6, 3e-7), Held::No, Box::new(|_| Ok(lone_step())));
     let gain = (1.0 / 1.9, 0.5);
     row(

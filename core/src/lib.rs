@@ -135,6 +135,8 @@ pub use nalgebra;
 
 pub use base::scalar::Real;
 pub use base::status::{Error, Place, Result, Status};
+#[cfg(feature = "derivatives")]
+pub use dynamics::derivatives::motion::Parameter;
 pub use dynamics::evaluation::Counters;
 pub use dynamics::indicators::Resolution;
 pub use fluid::contact::Gap;
@@ -147,6 +149,8 @@ pub use setup::automatic_nodes::{MOST_CHECKED, Resolved};
 pub use setup::compile::{ModelMemory, ModelRequirement};
 #[cfg(feature = "alloc")]
 pub use setup::owned::{ModelBuf, SimBuf};
+#[cfg(feature = "derivatives")]
+pub use simulation::derivatives::Linearization;
 pub use simulation::diagnostics::{Energy, EnergyDrift};
 pub use simulation::notices::STEP_ERROR_LIMIT;
 pub use simulation::sim::{STEP_LIMIT, Sim, SimHead, SimRequirement};

@@ -1,7 +1,7 @@
 //! Derivatives of forces and motion against differences of eighth order, identities and closed forms.
 
-use nekton::scene::{Link, Quadrature, Repulsion, Scene, Shape, Wall};
-use nekton::{Sim, SimBuf};
+use nekton::scene::{Drive, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Repulsion, Scene, Shape, Signal, Wall};
+use nekton::{Parameter, Sim, SimBuf};
 use nekton_tests::*;
 
 /// Three links without any symmetry, as three bodies.
@@ -92,7 +92,12 @@ fn check(place: &str, scene: &Scene<'_, f64>, step: f64, tolerance: f64) {
     }
 }
 
-fn everywhere(nodes: usize, quadrature: Quadrature, repulsion: Option<Repulsion<f64>>, check: impl Fn(&str, &Scene<'_, f64>)) {
+fn everywhere(
+    nodes: usize,
+    quadrature: Quadrature,
+    repulsion: Option<Repulsion<f64>>,
+    check: impl Fn(&str, &Scene<'_, f64>),
+) {
     let links = links(nodes);
     let bodies: Vec<_> = (0..3).map(|k| body(&links[k], POSES[k], VELOCITIES[k])).collect();
     let obstacles = obstacle();
@@ -107,6 +112,200 @@ fn everywhere(nodes: usize, quadrature: Quadrature, repulsion: Option<Repulsion<
 #[test]
 fn derivatives_of_the_force_are_exact_at_any_resolution() {
     for nodes in [16, 32] {
-        everywhere(nodes, Quadrature::Plain, None, |place, scene| check(&format!("{place}, {nodes}"), scene, 2e-3, 5e-12));
+        everywhere(nodes, Quadrature::Plain, None, |place, scene| {
+            check(&format!("{place}, {nodes}"), scene, 2e-3, 5e-12)
+        });
+    }
+}
+
+#[test]
+fn derivatives_of_repulsion_are_exact() {
+    let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 0.01 });
+    everywhere(16, Quadrature::Plain, repulsion, |place, scene| check(place, scene, 2e-3, 5e-12));
+    let odd = Some(Repulsion { alpha: 3.3, epsilon: 0.02 });
+    everywhere(16, Quadrature::Plain, odd, |place, scene| check(place, scene, 2e-3, 5e-12));
+}
+
+#[test]
+fn derivatives_with_graded_nodes_are_those_of_the_force_where_space_is_resolved() {
+    let repulsion = Some(Repulsion { alpha: 4.0, epsilon: 0.01 });
+    everywhere(128, Quadrature::Graded, repulsion, |place, scene| check(place, scene, 2e-3, 1e-10));
+}
+
+/// ∂ẏ/∂y and ∂ẏ/∂θ.
+fn linearized(sim: &mut Sim<'_, f64>, parameters: &[Parameter]) -> [Vec<f64>; 2] {
+    let n = sim.state().len();
+    let mut memory = vec![f64::NAN; Sim::derivative_requirement(&sim.model()).unwrap()];
+    let (mut a, mut b) = (vec![f64::NAN; n * n], vec![f64::NAN; n * parameters.len()]);
+    sim.linearize(parameters, &mut a, &mut b, &mut memory).unwrap();
+    [a, b]
+}
+
+/// Columns against differences, each relative to its largest entry.
+fn compare(name: &str, found: &[f64], exact: &[Vec<f64>], tolerance: f64) {
+    for (k, (found, exact)) in found.chunks_exact(exact[0].len()).zip(exact).enumerate() {
+        let scale = exact.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+        let error = found.iter().zip(exact).fold(0.0, |m: f64, (f, e)| m.max((f - e).abs())) / scale;
+        println!("{name} {k}: {error:.1e}");
+        assert!(error <= tolerance, "{name} {k}: {error:.1e}\n{found:?}\n{exact:?}");
+    }
+}
+
+/// Three links of a swimmer, the second hinged and the third sliding, with anchors off every axis.
+fn swimmer(nodes: usize, drives: [Drive<'static, f64>; 2]) -> [Link<'static, f64>; 3] {
+    let [[first], [second], [third]] = links(nodes);
+    let slider = Joint {
+        parent: 1,
+        kind: JointKind::Slider { axis: [0.6, 0.8], angle: 0.4 },
+        parent_anchor: [0.7, 0.4],
+        self_anchor: [-0.8, -0.2],
+        drive: drives[1],
+    };
+    [first, hinged(second, 0, [1.1, 0.2], [-0.7, 0.1], drives[0]), Link { joint: Some(slider), ..third }]
+}
+
+const STROKE: Harmonic<f64> = Harmonic { offset: 0.2, amplitude: 0.3, frequency: 0.4, phase: 0.7 };
+
+const STROKES: [Harmonic<f64>; 1] = [STROKE];
+
+fn prescribed() -> Drive<'static, f64> {
+    Drive::Motion(Signal::Harmonic { terms: &STROKES, window: None })
+}
+
+fn driven() -> Drive<'static, f64> {
+    let torque = Signal::Harmonic { terms: &STROKES, window: None };
+    Drive::Torque { torque, stiffness: 0.7, damping: 0.3, rest: 0.25, start: [0.5, -0.4] }
+}
+
+fn check_motion(name: &str, scene: &Scene<'_, f64>) {
+    let mut sim = at_start(scene);
+    let mut sim = sim.view();
+    let y = sim.state().to_vec();
+    let [a, _] = linearized(&mut sim, &[]);
+    let exact = by_differences(&y, 2e-3, |y| {
+        let mut rates = vec![0.0; y.len()];
+        sim.rhs(0.0, y, &mut rates).unwrap();
+        rates
+    });
+    compare(name, &a, &exact, 1e-10);
+}
+
+#[test]
+fn linearization_of_free_and_articulated_bodies_is_the_derivative_of_the_right_hand_side() {
+    for (name, drives) in [
+        ("hinge and slider prescribed", [prescribed(), prescribed()]),
+        ("torque and prescribed", [driven(), prescribed()]),
+        ("prescribed and torque", [prescribed(), driven()]),
+    ] {
+        let links = swimmer(24, drives);
+        let lone = [body(&links, [0.2, -0.1, 0.3], [0.4, -0.3, 0.7])];
+        let scene =
+            Scene { bodies: &lone, quadrature: Quadrature::Plain, allow_unresolved: true, ..Scene::new(1.3, 0.0) };
+        check_motion(&format!("{name}, lone"), &scene);
+        let heavy = Scene { gravity: 9.81, ..scene };
+        check_motion(&format!("{name}, heavy"), &heavy);
+        let other = self::links(24);
+        let two = [lone[0], body(&other[0], [0.3, 2.4, 0.7], [0.2, -0.4, 0.5])];
+        check_motion(&format!("{name}, beside another"), &Scene { bodies: &two, ..heavy });
+        let obstacles = [wall(Shape::Ellipse { a: 0.3, b: 0.5 }, [-1.9, 0.9], 0.4, 32)];
+        check_motion(&format!("{name}, beside an obstacle"), &Scene { obstacles: &obstacles, ..scene });
+    }
+}
+
+#[test]
+fn derivatives_by_parameters_are_those_of_other_models() {
+    // What is changed in turn.
+    type Change = fn(&mut Values, f64);
+    struct Values {
+        density: f64,
+        gravity: f64,
+        mass: f64,
+        inertia: f64,
+        torque: f64,
+        stiffness: f64,
+        damping: f64,
+        rest: f64,
+        stroke: Harmonic<f64>,
+    }
+    let values = || Values {
+        density: 1.3,
+        gravity: 9.81,
+        mass: 0.9,
+        inertia: 0.2,
+        torque: 0.4,
+        stiffness: 0.7,
+        damping: 0.3,
+        rest: 0.25,
+        stroke: STROKE,
+    };
+    let rates = |v: &Values, look: &mut dyn FnMut(&mut Sim<'_, f64>) -> Vec<f64>| -> Vec<f64> {
+        let strokes = [v.stroke];
+        let torque = Drive::Torque {
+            torque: Signal::Constant(v.torque),
+            stiffness: v.stiffness,
+            damping: v.damping,
+            rest: v.rest,
+            start: [0.5, -0.4],
+        };
+        let mut links = swimmer(24, [torque, torque]);
+        if let Some(joint) = &mut links[2].joint {
+            joint.drive = Drive::Motion(Signal::Harmonic { terms: &strokes, window: None });
+        }
+        links[1].mass = Mass::Given { mass: v.mass, inertia: v.inertia, centre_of_mass: [0.05, -0.02] };
+        let lone = [body(&links, [0.2, -0.1, 0.3], [0.4, -0.3, 0.7])];
+        let quadrature = Quadrature::Plain;
+        let scene = Scene { bodies: &lone, quadrature, allow_unresolved: true, ..Scene::new(v.density, v.gravity) };
+        let mut sim = at_start(&scene);
+        look(&mut sim.view())
+    };
+    let mut y = Vec::new();
+    let parameters = [
+        Parameter::FluidDensity,
+        Parameter::Gravity,
+        Parameter::Mass(1),
+        Parameter::Inertia(1),
+        Parameter::Torque(0),
+        Parameter::Stiffness(0),
+        Parameter::Damping(0),
+        Parameter::Rest(0),
+        Parameter::Position(1),
+        Parameter::Rate(1),
+        Parameter::Acceleration(1),
+    ];
+    let b = rates(&values(), &mut |sim| {
+        y = sim.state().to_vec();
+        linearized(sim, &parameters)[1].clone()
+    });
+    let n = y.len();
+    let column = |k: usize| b[k * n..(k + 1) * n].to_vec();
+    let sum =
+        |terms: [f64; 3]| -> Vec<f64> { (0..n).map(|i| (0..3).map(|k| terms[k] * b[(8 + k) * n + i]).sum()).collect() };
+    let Harmonic { amplitude, frequency: w, phase, .. } = STROKE;
+    let (s, c) = phase.sin_cos();
+    let cases: [(&str, Vec<f64>, Change); 12] = [
+        ("density", column(0), |v, x| v.density += x),
+        ("gravity", column(1), |v, x| v.gravity += x),
+        ("mass", column(2), |v, x| v.mass += x),
+        ("inertia", column(3), |v, x| v.inertia += x),
+        ("torque", column(4), |v, x| v.torque += x),
+        ("stiffness", column(5), |v, x| v.stiffness += x),
+        ("damping", column(6), |v, x| v.damping += x),
+        ("rest", column(7), |v, x| v.rest += x),
+        ("offset", sum([1.0, 0.0, 0.0]), |v, x| v.stroke.offset += x),
+        ("amplitude", sum([s, w * c, -w * w * s]), |v, x| v.stroke.amplitude += x),
+        ("frequency", sum([0.0, amplitude * c, -2.0 * amplitude * w * s]), |v, x| v.stroke.frequency += x),
+        ("phase", sum([amplitude * c, -amplitude * w * s, -amplitude * w * w * c]), |v, x| v.stroke.phase += x),
+    ];
+    for (name, found, change) in cases {
+        let exact = by_differences(&[0.0], 2e-3, |x| {
+            let mut v = values();
+            change(&mut v, x[0]);
+            rates(&v, &mut |sim| {
+                let mut out = vec![0.0; n];
+                sim.rhs(0.0, &y, &mut out).unwrap();
+                out
+            })
+        });
+        compare(name, &found, &exact, 1e-9);
     }
 }

@@ -249,6 +249,19 @@ impl<R: Real> Evaluation<'_, R> {
 
     /// M w + f in `force`, and (∂F/∂s)ᵀ of it in `generalized`.
     fn generalize_forces(&mut self, model: &Model<'_, R>, w: Inertia) {
+        self.add_forces(model, w);
+        let forces = &mut self.forces;
+        project(model, self.coordinates.s, self.placement.poses, forces.force, forces.generalized);
+    }
+
+    /// M q̈ + f of the links in `force`. After [`Evaluation::accelerate`].
+    #[cfg(feature = "derivatives")]
+    pub(crate) fn link_forces(&mut self, model: &Model<'_, R>) {
+        self.add_forces(model, Inertia::Accelerations);
+    }
+
+    /// M w + f in `force`.
+    fn add_forces(&mut self, model: &Model<'_, R>, w: Inertia) {
         self.fluid_force(model, w);
         let forces = &mut self.forces;
         axpy(forces.force, R::one(), forces.outer);
@@ -257,7 +270,6 @@ impl<R: Real> Evaluation<'_, R> {
             Inertia::Accelerations => &*forces.qdd,
         };
         add_body_inertia(model, accelerations, forces.force);
-        project(model, self.coordinates.s, self.placement.poses, forces.force, forces.generalized);
     }
 
     fn check(&self) -> Result<()> {

@@ -106,7 +106,6 @@ struct PairOf<'a, R> {
     source_nodes: Nodes<'a, R>,
 }
 
-
 /// Reals of a vector of lanes of the target's nodes: positions and weights; velocities.
 const TARGET: usize = WEIGHTS * LANES;
 const VELOCITY: usize = VELOCITIES * LANES;
@@ -117,7 +116,8 @@ impl<R: Real> PairOf<'_, R> {
     fn fill_targets(&self, motion: &Relative<R>, from: &TangentSource<'_, R>, out: &mut [R]) {
         let n = self.target.nodes;
         let ([z0, z1], [w0, w1]) = (motion.place, motion.rate);
-        let (adjoint, second) = (part(from.adjoint, self.target.first, n), part(from.second_adjoint, self.target.first, n));
+        let (adjoint, second) =
+            (part(from.adjoint, self.target.first, n), part(from.second_adjoint, self.target.first, n));
         for (q, block) in out.as_chunks_mut::<TARGET>().0.iter_mut().enumerate() {
             for lane in 0..LANES {
                 // What is missing to a whole vector stands where the last node stands, without weight.
@@ -185,7 +185,9 @@ impl<R: Real> Task for Kernel<'_, '_, '_, R> {
             let total = core::hint::black_box(total);
             let twice = weight + weight;
             let weights = [weight, weight, weight, weight, twice, twice];
-            for ((out, total), weight) in sums.as_chunks_mut::<2>().0.iter_mut().zip(total.as_chunks::<2>().0).zip(weights) {
+            for ((out, total), weight) in
+                sums.as_chunks_mut::<2>().0.iter_mut().zip(total.as_chunks::<2>().0).zip(weights)
+            {
                 let [x, y] = *total;
                 let value = complex(sum_of(x), sum_of(y)) * weight;
                 *out = [value.re, value.im];
@@ -244,7 +246,12 @@ fn add_turned<R: Real>(x: &mut [R; LANES], y: &mut [R; LANES], w: Complex<R>, sx
 
 /// Adds a b, lane by lane.
 #[inline(always)]
-fn add_products<R: Real>(x: &mut [R; LANES], y: &mut [R; LANES], [ax, ay]: [&[R; LANES]; 2], [bx, by]: [&[R; LANES]; 2]) {
+fn add_products<R: Real>(
+    x: &mut [R; LANES],
+    y: &mut [R; LANES],
+    [ax, ay]: [&[R; LANES]; 2],
+    [bx, by]: [&[R; LANES]; 2],
+) {
     for (((x, y), (ax, ay)), (bx, by)) in x.iter_mut().zip(y).zip(ax.iter().zip(ay)).zip(bx.iter().zip(by)) {
         (*x, *y) = (*x + (*ax * *bx - *ay * *by), *y + (*ax * *by + *ay * *bx));
     }
@@ -408,9 +415,7 @@ fn moments<R: Real>(pair: &PairOf<'_, R>, targets: &[R], velocities: &[R]) -> [C
     for (block, velocity) in targets.as_chunks::<TARGET>().0.iter().zip(velocities.as_chunks::<VELOCITY>().0) {
         let [hx, hy, kx, ky, ..] = velocity.as_chunks::<LANES>().0 else { continue };
         let weights = block.as_chunks::<LANES>().0.get(2).into_iter().flatten();
-        for ((weight, (hx, hy)), ((kx, ky), x)) in
-            weights.zip(hx.iter().zip(hy)).zip(kx.iter().zip(ky).zip(&mut x))
-        {
+        for ((weight, (hx, hy)), ((kx, ky), x)) in weights.zip(hx.iter().zip(hy)).zip(kx.iter().zip(ky).zip(&mut x)) {
             let (h, k) = (complex(*hx, *hy) * *weight, complex(*kx, *ky) * *weight);
             let (hx, kx) = (h * x, k * x);
             for (sum, term) in sums.iter_mut().zip([h, hx, k, kx, kx * x]) {

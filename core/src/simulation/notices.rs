@@ -94,10 +94,10 @@ impl<R: Real> Sim<'_, R> {
         }
     }
 
-    /// An evaluation of the state shown, if it can be trusted at all.
-    pub(crate) fn evaluated(&mut self) -> Result<()> {
+    /// An evaluation of the state shown, if it can be trusted at all, and its indicators.
+    pub(crate) fn evaluated(&mut self) -> Result<Resolution<R>> {
         self.refresh()?;
-        self.bounded().map(|_| ())
+        self.bounded()
     }
 
     /// Error indicators at the state shown, from all of the added mass. 9n + 7 solves for n links, two passes over the pairs.

@@ -53,7 +53,14 @@ fn turned_unit<R: Real>(a: usize, x: impl Fn(usize) -> R) -> R {
 }
 
 /// R_ab = ∂(M q̇)_a/∂q_b at fixed q̇, of the fluid.
-fn momentum_slope<R: Real>(m: &Square<'_, R>, slope: &Square<'_, R>, qd: &[R], p: impl Fn(usize) -> R, a: usize, b: usize) -> R {
+fn momentum_slope<R: Real>(
+    m: &Square<'_, R>,
+    slope: &Square<'_, R>,
+    qd: &[R],
+    p: impl Fn(usize) -> R,
+    a: usize,
+    b: usize,
+) -> R {
     let mut r = slope.get(a, b);
     if is_angle(b) {
         if a / 3 == b / 3 {
@@ -65,9 +72,9 @@ fn momentum_slope<R: Real>(m: &Square<'_, R>, slope: &Square<'_, R>, qd: &[R], p
 }
 
 /// `out = R`, 3n × 3n.
-pub(crate) fn momentum_slopes<R: Real>(qd: &[R], d: &Derivatives<'_, R>, p: &[R], out: &mut [R]) {
+pub(crate) fn momentum_slopes<R: Real>(qd: &[R], mass: &[R], slope: &[R], p: &[R], out: &mut [R]) {
     let n = qd.len();
-    let (m, slope) = (Square { data: d.mass, n }, Square { data: d.slope, n });
+    let (m, slope) = (Square { data: mass, n }, Square { data: slope, n });
     for b in 0..n {
         for a in 0..n {
             put(out, b * n + a, momentum_slope(&m, &slope, qd, |k| at(p, k), a, b));
@@ -80,7 +87,8 @@ pub(crate) fn complete<R: Real>(qd: &[R], qdd: &[R], d: &mut Derivatives<'_, R>)
     let n = qd.len();
     let Derivatives { mass, mass_rate, slope, mixed, hessian, position, velocity, .. } = d;
     let square = |data| Square { data, n };
-    let (m, mv, p_ab, q, y) = (square(&**mass), square(&**mass_rate), square(&**slope), square(&**mixed), square(&**hessian));
+    let (m, mv, p_ab, q, y) =
+        (square(&**mass), square(&**mass_rate), square(&**slope), square(&**mixed), square(&**hessian));
     let spin = |l: usize| at(qd, 3 * l + 2);
     // Vectors are formed anew where they are needed: n is small, and they need no memory.
     let momentum = |a: usize| m.times(qd, a);

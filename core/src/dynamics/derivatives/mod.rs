@@ -235,7 +235,8 @@ impl<R: Real> Evaluation<'_, R> {
         moments(c, dims, density * R::HALF, d.second, d.mixed);
         let half = density * R::HALF;
         for b in 0..rows {
-            let (r, second, s_b) = (part(d.transposed, b * ld, n), part(d.second_transposed, b * ld, n), part(d.rate, b * ld, n));
+            let (r, second, s_b) =
+                (part(d.transposed, b * ld, n), part(d.second_transposed, b * ld, n), part(d.rate, b * ld, n));
             for a in 0..rows {
                 let (u, z, r_a) = (part(unit, a * ld, n), part(d.product, a * ld, n), part(d.transposed, a * ld, n));
                 add(d.slope, b * rows + a, half * inner(u, r));

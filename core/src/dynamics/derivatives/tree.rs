@@ -89,7 +89,8 @@ impl<R: Real> Tree<'_, R> {
             let (rate, acceleration) = (at(self.ds, c), at(self.dds, c));
             // A hinge has no axis: all of its terms are 0.
             let linear = q.linear + dh - d_o;
-            let velocity = v.linear + perp(h) * v.angular + perp(dh) * w_p + de * rate + e * dds - perp(o) * spin - perp(d_o) * w;
+            let velocity =
+                v.linear + perp(h) * v.angular + perp(dh) * w_p + de * rate + e * dds - perp(o) * spin - perp(d_o) * w;
             let coriolis = perp(e) * (v.angular * rate + w_p * dds) + perp(de) * (w_p * rate);
             let turned = |arm: Complex<R>, slope: Complex<R>, w: R, dw: R, b: R, db: R| {
                 perp(arm) * db - arm * (R::TWO * w * dw) + perp(slope) * b - slope * (w * w)
@@ -106,7 +107,15 @@ impl<R: Real> Tree<'_, R> {
 
     /// Adds (δN)ᵀ f to `out` · c: how the generalized forces of fixed forces `f` on the links (world · 3n, overwritten by the sums that
     /// are carried to the roots) change along a direction of which `q` are the links' derivatives. `moments` · 3n is scratch. O(links).
-    pub(crate) fn add_projection(&self, model: &Model<'_, R>, ds: &[R], q: &[R], f: &mut [R], moments: &mut [R], out: &mut [R]) {
+    pub(crate) fn add_projection(
+        &self,
+        model: &Model<'_, R>,
+        ds: &[R],
+        q: &[R],
+        f: &mut [R],
+        moments: &mut [R],
+        out: &mut [R],
+    ) {
         moments.fill(R::zero());
         for (i, link) in model.links.iter().enumerate().rev() {
             let (c, p) = (link.coordinate, link.parent);

@@ -31,6 +31,24 @@ pub(crate) fn add_gradient<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, o
     }
 }
 
+/// Adds the derivative of the gradient by masses (0) and by the density of the fluid (1), times two numbers: at `gravity` and with these
+/// numbers for the masses' share and the density.
+#[cfg(feature = "derivatives")]
+pub(crate) fn add_slope<R: Real>(
+    model: &Model<'_, R>,
+    poses: Poses<'_, R>,
+    gravity: R,
+    [masses, density]: [R; 2],
+    out: &mut [R],
+) {
+    let walls = model.head.plan.walls;
+    for (i, link) in model.links.iter().enumerate() {
+        let (c, displaced) = (poses.get(walls + i).turned(link.centroid), density * link.area);
+        add(out, 3 * i + 1, gravity * (masses * link.mass - displaced));
+        add(out, 3 * i + 2, -gravity * displaced * c.re);
+    }
+}
+
 /// Adds ∂²P/∂q² · 3n × 3n, column-major.
 #[cfg(feature = "derivatives")]
 pub(crate) fn add_hessian<R: Real>(model: &Model<'_, R>, poses: Poses<'_, R>, out: &mut [R]) {

@@ -6,12 +6,12 @@
 //! Tested by `tests/gradients`, `tests/repulsion` (another quadrature), `tests/near_contact`, `tests/errata`.
 
 use crate::base::complex::{Complex, cabs, cis, complex};
+use crate::base::scalar::Real;
 #[cfg(feature = "derivatives")]
 use crate::base::{
     complex::{dot, perp},
     memory::add,
 };
-use crate::base::scalar::Real;
 use crate::dynamics::forces::close_range;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::induced::add_three;
