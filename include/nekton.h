@@ -233,6 +233,42 @@ enum {
  */
 #define NEKTON_METHOD_GAUSS6 4
 
+/** Density of the fluid, kg/m^2; the masses of bodies stay. */
+#define NEKTON_PARAMETER_FLUID_DENSITY 1
+
+/** Gravity, m/s^2. */
+#define NEKTON_PARAMETER_GRAVITY 2
+
+/** Mass of link index, kg/m. */
+#define NEKTON_PARAMETER_MASS 3
+
+/** Moment of inertia of link index about its centre of mass, kg m. */
+#define NEKTON_PARAMETER_INERTIA 4
+
+/** Force from outside on link index, world: component 0 along x, 1 along y, N/m; 2: torque about the centre of mass, N. */
+#define NEKTON_PARAMETER_WRENCH 5
+
+/** Torque (slider: force) added to that of torque-driven joint index. */
+#define NEKTON_PARAMETER_TORQUE 6
+
+/** Spring constant of torque-driven joint index. */
+#define NEKTON_PARAMETER_STIFFNESS 7
+
+/** Damping constant of torque-driven joint index. */
+#define NEKTON_PARAMETER_DAMPING 8
+
+/** Unloaded position of the spring of torque-driven joint index. */
+#define NEKTON_PARAMETER_REST 9
+
+/** Value of prescribed joint index; its rate and acceleration stay. */
+#define NEKTON_PARAMETER_POSITION 10
+
+/** Rate of prescribed joint index. */
+#define NEKTON_PARAMETER_RATE 11
+
+/** Acceleration of prescribed joint index. */
+#define NEKTON_PARAMETER_ACCELERATION 12
+
 /** No place, or nothing. */
 #define NEKTON_PLACE_NONE (-1)
 
@@ -619,6 +655,18 @@ typedef struct nekton_joint_info {
     /** 1: moved as prescribed (or locked); 0: by a torque. */
     int32_t prescribed;
 } nekton_joint_info;
+
+/** What the motion is differentiated by. Joints and links count from 0, as in nekton_sim_joint_values and nekton_sim_positions. */
+typedef struct nekton_parameter {
+    /** NEKTON_PARAMETER_... */
+    int32_t kind;
+    /** Link or joint. */
+    int32_t index;
+    /** Of a wrench. */
+    int32_t component;
+    /** 0. */
+    int32_t reserved;
+} nekton_parameter;
 
 /** Energies, J/m. */
 typedef struct nekton_energy {
@@ -1169,6 +1217,51 @@ nekton_status nekton_sim_gyroscopic(struct nekton_sim *sim,
                                     double *out,
                                     size_t n,
                                     struct nekton_diag *diag);
+
+/**
+ * Memory that nekton_sim_linearize and nekton_sim_force_derivatives need for a simulation of this model.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, SIZE_OVERFLOW, UNSUPPORTED (an archive without the feature derivatives). Any thread.
+ */
+nekton_status nekton_sim_derivatives_req(const struct nekton_model *model,
+                                         struct nekton_req *req,
+                                         struct nekton_diag *diag);
+
+/**
+ * Linearization of dy/dt = f(t, y, parameters) at the state shown, y as nekton_sim_get_state gives it (d numbers): a = df/dy, d x d,
+ * and b = df/dparameters, d x count, column-major; a_len and b_len are their numbers of entries. Derivatives of what
+ * nekton_sim_rhs computes, with nodes that stay where they are on their outlines. *bound gets a bound of their relative error in
+ * space. mem: len bytes as nekton_sim_derivatives_req says, used while the call runs. The simulation does not change, and a run goes
+ * on by the same bits. Costs two to three evaluations more.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, MEMORY_TOO_SMALL, UNKNOWN_KIND and OUT_OF_RANGE (a parameter that the
+ * model does not have: diag says which), UNSUPPORTED (circulation, the boundary formula), CONTACT, SINGULAR, BOUND_EXCEEDED,
+ * NON_FINITE_STATE; a and b are then 0. One thread per simulation.
+ */
+nekton_status nekton_sim_linearize(struct nekton_sim *sim,
+                                   const struct nekton_parameter *parameters,
+                                   size_t count,
+                                   double *a,
+                                   size_t a_len,
+                                   double *b,
+                                   size_t b_len,
+                                   double *bound,
+                                   void *mem,
+                                   size_t len,
+                                   struct nekton_diag *diag);
+
+/**
+ * Derivatives of the links' force r = M qdd + F at the state shown for given accelerations qdd (n = 3 links), F without inertia and
+ * without the forces of joints: position = dr/dq and velocity = dr/dqd, n x n each, column-major. For mechanics of your own. mem as for
+ * nekton_sim_linearize.
+ * Errors: as nekton_sim_linearize, NOT_FINITE. One thread per simulation.
+ */
+nekton_status nekton_sim_force_derivatives(struct nekton_sim *sim,
+                                           const double *qdd,
+                                           size_t n,
+                                           double *position,
+                                           double *velocity,
+                                           void *mem,
+                                           size_t len,
+                                           struct nekton_diag *diag);
 
 /**
  * Energies at the state shown. One evaluation if there was none since the last step.

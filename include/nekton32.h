@@ -780,6 +780,51 @@ nekton_status nekton32_sim_gyroscopic(struct nekton32_sim *sim,
                                       struct nekton_diag *diag);
 
 /**
+ * Memory that nekton32_sim_linearize and nekton32_sim_force_derivatives need for a simulation of this model.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, SIZE_OVERFLOW, UNSUPPORTED (an archive without the feature derivatives). Any thread.
+ */
+nekton_status nekton32_sim_derivatives_req(const struct nekton32_model *model,
+                                           struct nekton_req *req,
+                                           struct nekton_diag *diag);
+
+/**
+ * Linearization of dy/dt = f(t, y, parameters) at the state shown, y as nekton32_sim_get_state gives it (d numbers): a = df/dy, d x d,
+ * and b = df/dparameters, d x count, column-major; a_len and b_len are their numbers of entries. Derivatives of what
+ * nekton32_sim_rhs computes, with nodes that stay where they are on their outlines. *bound gets a bound of their relative error in
+ * space. mem: len bytes as nekton32_sim_derivatives_req says, used while the call runs. The simulation does not change, and a run goes
+ * on by the same bits. Costs two to three evaluations more.
+ * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, MEMORY_TOO_SMALL, UNKNOWN_KIND and OUT_OF_RANGE (a parameter that the
+ * model does not have: diag says which), UNSUPPORTED (circulation, the boundary formula), CONTACT, SINGULAR, BOUND_EXCEEDED,
+ * NON_FINITE_STATE; a and b are then 0. One thread per simulation.
+ */
+nekton_status nekton32_sim_linearize(struct nekton32_sim *sim,
+                                     const struct nekton_parameter *parameters,
+                                     size_t count,
+                                     float *a,
+                                     size_t a_len,
+                                     float *b,
+                                     size_t b_len,
+                                     float *bound,
+                                     void *mem,
+                                     size_t len,
+                                     struct nekton_diag *diag);
+
+/**
+ * Derivatives of the links' force r = M qdd + F at the state shown for given accelerations qdd (n = 3 links), F without inertia and
+ * without the forces of joints: position = dr/dq and velocity = dr/dqd, n x n each, column-major. For mechanics of your own. mem as for
+ * nekton32_sim_linearize.
+ * Errors: as nekton32_sim_linearize, NOT_FINITE. One thread per simulation.
+ */
+nekton_status nekton32_sim_force_derivatives(struct nekton32_sim *sim,
+                                             const float *qdd,
+                                             size_t n,
+                                             float *position,
+                                             float *velocity,
+                                             void *mem,
+                                             size_t len,
+                                             struct nekton_diag *diag);
+
+/**
  * Energies at the state shown. One evaluation if there was none since the last step.
  * Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, CONTACT, SINGULAR, BOUND_EXCEEDED, NON_FINITE_STATE. One thread per simulation.
  */

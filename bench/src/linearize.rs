@@ -25,7 +25,7 @@ impl Linearization {
 
     /// All of A, of an evaluation that is there.
     pub(crate) fn run(&mut self) {
-        let done = self.sim.view().linearize(&[], &mut self.matrix, &mut [], &mut self.memory);
+        let done = self.sim.view().linearize([], &mut self.matrix, &mut [], &mut self.memory);
         done.expect("the scene can be linearized");
         std::hint::black_box(&self.matrix);
     }

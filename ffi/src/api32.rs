@@ -2,7 +2,7 @@
 
 use crate::diag::{report, report_notice};
 use crate::types::*;
-use crate::{model, questions, sim, sized};
+use crate::{derivatives, model, questions, sim, sized};
 use core::ffi::c_void;
 use core::ptr::null_mut;
 
@@ -638,6 +638,66 @@ pub unsafe extern "C" fn nekton32_sim_gyroscopic(
 ) -> nekton_status {
     // SAFETY: every pointer is checked as the crate's documentation says.
     unsafe { report(diag, questions::ask(sim, out, n, 2, |s, out| s.gyroscopic(out))) }
+}
+
+/// Memory that nekton32_sim_linearize and nekton32_sim_force_derivatives need for a simulation of this model.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, SIZE_OVERFLOW, UNSUPPORTED (an archive without the feature derivatives). Any thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_derivatives_req(
+    model: *const ModelHandle<f32>,
+    req: *mut nekton_req,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, derivatives::req(model, req)) }
+}
+
+/// Linearization of dy/dt = f(t, y, parameters) at the state shown, y as nekton32_sim_get_state gives it (d numbers): a = df/dy, d x d,
+/// and b = df/dparameters, d x count, column-major; a_len and b_len are their numbers of entries. Derivatives of what
+/// nekton32_sim_rhs computes, with nodes that stay where they are on their outlines. *bound gets a bound of their relative error in
+/// space. mem: len bytes as nekton32_sim_derivatives_req says, used while the call runs. The simulation does not change, and a run goes
+/// on by the same bits. Costs two to three evaluations more.
+/// Errors: BAD_HANDLE, NULL_POINTER, MISALIGNED, LENGTH, ALIASING, MEMORY_TOO_SMALL, UNKNOWN_KIND and OUT_OF_RANGE (a parameter that the
+/// model does not have: diag says which), UNSUPPORTED (circulation, the boundary formula), CONTACT, SINGULAR, BOUND_EXCEEDED,
+/// NON_FINITE_STATE; a and b are then 0. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_linearize(
+    sim: *mut SimHandle<f32>,
+    parameters: *const nekton_parameter,
+    count: usize,
+    a: *mut f32,
+    a_len: usize,
+    b: *mut f32,
+    b_len: usize,
+    bound: *mut f32,
+    mem: *mut c_void,
+    len: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    let mem = mem.cast();
+    let asked = derivatives::Asked { parameters, count, a, a_len, b, b_len, bound, mem, len };
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, derivatives::linearize(sim, &asked)) }
+}
+
+/// Derivatives of the links' force r = M qdd + F at the state shown for given accelerations qdd (n = 3 links), F without inertia and
+/// without the forces of joints: position = dr/dq and velocity = dr/dqd, n x n each, column-major. For mechanics of your own. mem as for
+/// nekton32_sim_linearize.
+/// Errors: as nekton32_sim_linearize, NOT_FINITE. One thread per simulation.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nekton32_sim_force_derivatives(
+    sim: *mut SimHandle<f32>,
+    qdd: *const f32,
+    n: usize,
+    position: *mut f32,
+    velocity: *mut f32,
+    mem: *mut c_void,
+    len: usize,
+    diag: *mut nekton_diag,
+) -> nekton_status {
+    let asked = derivatives::AskedForces { qdd, n, position, velocity, mem: mem.cast(), len };
+    // SAFETY: every pointer is checked as the crate's documentation says.
+    unsafe { report(diag, derivatives::force_derivatives(sim, &asked)) }
 }
 
 /// Energies at the state shown. One evaluation if there was none since the last step.

@@ -24,6 +24,7 @@ mod buffers;
 mod check;
 mod convert;
 mod defaults;
+mod derivatives;
 pub mod diag;
 mod memory;
 mod model;

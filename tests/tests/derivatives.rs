@@ -137,7 +137,7 @@ fn linearized(sim: &mut Sim<'_, f64>, parameters: &[Parameter]) -> [Vec<f64>; 2]
     let n = sim.state().len();
     let mut memory = vec![f64::NAN; Sim::derivative_requirement(&sim.model()).unwrap()];
     let (mut a, mut b) = (vec![f64::NAN; n * n], vec![f64::NAN; n * parameters.len()]);
-    sim.linearize(parameters, &mut a, &mut b, &mut memory).unwrap();
+    sim.linearize(parameters.iter().copied(), &mut a, &mut b, &mut memory).unwrap();
     [a, b]
 }
 

@@ -86,13 +86,18 @@ impl<R: Real> Sim<'_, R> {
     /// # Errors
     /// `Length`, `MemoryTooSmall`; `OutOfRange` with the name of a parameter that the model does not have; `Unsupported` as
     /// [`Sim::force_derivatives`]. As [`Sim::energy`].
-    pub fn linearize(
+    pub fn linearize<P>(
         &mut self,
-        parameters: &[Parameter],
+        parameters: P,
         a: &mut [R],
         b: &mut [R],
         memory: &mut [R],
-    ) -> Result<Linearization<R>> {
+    ) -> Result<Linearization<R>>
+    where
+        P: IntoIterator<Item = Parameter>,
+        P::IntoIter: ExactSizeIterator + Clone,
+    {
+        let parameters = parameters.into_iter();
         let rows = self.state.y.len();
         for (given, needed) in [(a.len(), rows * rows), (b.len(), rows * parameters.len())] {
             if given != needed {
@@ -101,7 +106,7 @@ impl<R: Real> Sim<'_, R> {
         }
         let model = self.model;
         supported(&model)?;
-        for (k, parameter) in parameters.iter().enumerate() {
+        for (k, parameter) in parameters.clone().enumerate() {
             parameter.checked(&model).map_err(|name| Error::new(Status::OutOfRange).of(name, k as f64))?;
         }
         let given = memory.len() as f64;

@@ -323,3 +323,42 @@ pub struct MethodDef<R> {
     /// ADAMS: first step after a start, s (shorter if the tolerances ask for that); 0: chosen. Must be 0 for a method of fixed steps.
     pub first_step: R,
 }
+
+/// Density of the fluid, kg/m^2; the masses of bodies stay.
+pub const NEKTON_PARAMETER_FLUID_DENSITY: i32 = 1;
+/// Gravity, m/s^2.
+pub const NEKTON_PARAMETER_GRAVITY: i32 = 2;
+/// Mass of link index, kg/m.
+pub const NEKTON_PARAMETER_MASS: i32 = 3;
+/// Moment of inertia of link index about its centre of mass, kg m.
+pub const NEKTON_PARAMETER_INERTIA: i32 = 4;
+/// Force from outside on link index, world: component 0 along x, 1 along y, N/m; 2: torque about the centre of mass, N.
+pub const NEKTON_PARAMETER_WRENCH: i32 = 5;
+/// Torque (slider: force) added to that of torque-driven joint index.
+pub const NEKTON_PARAMETER_TORQUE: i32 = 6;
+/// Spring constant of torque-driven joint index.
+pub const NEKTON_PARAMETER_STIFFNESS: i32 = 7;
+/// Damping constant of torque-driven joint index.
+pub const NEKTON_PARAMETER_DAMPING: i32 = 8;
+/// Unloaded position of the spring of torque-driven joint index.
+pub const NEKTON_PARAMETER_REST: i32 = 9;
+/// Value of prescribed joint index; its rate and acceleration stay.
+pub const NEKTON_PARAMETER_POSITION: i32 = 10;
+/// Rate of prescribed joint index.
+pub const NEKTON_PARAMETER_RATE: i32 = 11;
+/// Acceleration of prescribed joint index.
+pub const NEKTON_PARAMETER_ACCELERATION: i32 = 12;
+
+/// What the motion is differentiated by. Joints and links count from 0, as in nekton_sim_joint_values and nekton_sim_positions.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct nekton_parameter {
+    /// NEKTON_PARAMETER_...
+    pub kind: i32,
+    /// Link or joint.
+    pub index: i32,
+    /// Of a wrench.
+    pub component: i32,
+    /// 0.
+    pub reserved: i32,
+}

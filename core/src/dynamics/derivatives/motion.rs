@@ -119,7 +119,13 @@ pub(crate) struct Linearizer<'s, 'a, 'b, R: Real> {
 
 impl<R: Real> Linearizer<'_, '_, '_, R> {
     /// Fills A = ∂ẏ/∂y and B = ∂ẏ/∂θ, column-major, for the state evaluated last.
-    pub(crate) fn fill(&mut self, s: &mut TangentScratch<'_, R>, parameters: &[Parameter], a: &mut [R], b: &mut [R]) {
+    pub(crate) fn fill(
+        &mut self,
+        s: &mut TangentScratch<'_, R>,
+        parameters: impl Iterator<Item = Parameter>,
+        a: &mut [R],
+        b: &mut [R],
+    ) {
         let model = self.model;
         self.prepare(s);
         let rows = model.head.plan.state_len.max(1);
@@ -136,19 +142,19 @@ impl<R: Real> Linearizer<'_, '_, '_, R> {
                 self.write(None, part_mut(a, column * rows, rows));
             }
         }
-        for (parameter, column) in parameters.iter().zip(b.chunks_exact_mut(rows)) {
+        for (parameter, column) in parameters.zip(b.chunks_exact_mut(rows)) {
             self.clear();
             let coordinate = |j: usize| {
                 model.coordinates.iter().enumerate().filter(|(_, c)| c.component == 3).nth(j).map_or(0, |(i, _)| i)
             };
-            match *parameter {
+            match parameter {
                 Parameter::Position(j) => put(self.m.s, coordinate(j), R::one()),
                 Parameter::Rate(j) => put(self.m.ds, coordinate(j), R::one()),
                 Parameter::Acceleration(j) => put(self.m.dds, coordinate(j), R::one()),
                 _ => {}
             }
-            self.direction(Some(*parameter));
-            self.write(Some(*parameter), column);
+            self.direction(Some(parameter));
+            self.write(Some(parameter), column);
         }
     }
 
