@@ -6,8 +6,14 @@ mod drawing;
 #[cfg(test)]
 mod drawing_test;
 pub mod naca;
+mod noise;
+#[cfg(test)]
+mod noise_test;
 mod path;
 mod points;
+pub mod smooth;
+#[cfg(test)]
+mod smooth_test;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +23,7 @@ use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
 use points::MOST;
+pub use noise::noise;
 pub use points::{Outline, turn};
 
 /// Both surfaces of a section begin, and end, at most this part of its chord apart.
