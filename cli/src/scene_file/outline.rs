@@ -22,8 +22,8 @@ use std::path::Path;
 use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
-use points::MOST;
 pub use noise::noise;
+use points::MOST;
 pub use points::{Outline, turn};
 
 /// Both surfaces of a section begin, and end, at most this part of its chord apart.

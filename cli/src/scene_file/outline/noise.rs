@@ -24,8 +24,10 @@ const TURNING: f64 = 0.25;
 const SEEN: f64 = 3.0;
 /// Differences of one order that are looked at, about: enough to know the scatter to 2 %.
 const ENOUGH: usize = 4096;
-/// Part of the added mass from which on scatter matters: below, it costs nodes but hardly an error.
-const MATTERS: f64 = 1e-4;
+/// Fewer points bend too much from one to the next to tell bends from scatter.
+const MANY: usize = 48;
+/// Part of the added mass from which on scatter matters: below, it is no error that any bound shows.
+const MATTERS: f64 = 1e-5;
 
 /// The scatter of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +66,7 @@ pub fn noise(points: &[[f64; 2]], corners: &[usize]) -> Option<Noise> {
         let (sigma, length) = (all[order], middle(lengths));
         // Scatter adds to the fluid's inertia, by mode k of n/2 that it excites alike, k σ²: n σ²/2 on a circle of radius 1.
         let part = 3.0 * sigma * sigma / (length / stride as f64 * size);
-        let matters = order < 2 && all[0] <= SEEN * sigma && part > MATTERS;
+        let matters = n >= MANY && order < 2 && all[0] <= SEEN * sigma && part > MATTERS;
         found = Some(Noise { sigma, matters });
         if sigma <= CLEAR * length && all[0] <= TURNING * length {
             break;

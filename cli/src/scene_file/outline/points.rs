@@ -70,7 +70,7 @@ pub fn twice_area(points: &[[f64; 2]]) -> f64 {
 }
 
 /// A number with six digits.
-fn six(x: f64) -> f64 {
+pub fn six(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }
 

@@ -7,7 +7,7 @@
 //! of long waves. O(points).
 
 use super::noise::noise;
-use super::points::{Outline, distinct, extent, turn, twice_area};
+use super::points::{Outline, distinct, extent, six, turn, twice_area};
 
 /// Fewer points are a shape, not a fit.
 const LEAST: usize = 8;
@@ -39,13 +39,13 @@ impl Outline {
             return Err((format!("needs at least {LEAST} points, but there are {n}"), "leave it out".to_owned()));
         }
         if let Some(k) = (1..n).find(|k| given[*k] == given[*k - 1]) {
-            let hint = "leave one of the two out (points count from 0)".to_owned();
+            let hint = "leave one of the two out; points count from 0".to_owned();
             return Err((format!("cannot part points that are one: point {k} repeats the one before it"), hint));
         }
         let size = extent(given).into_iter().fold(0.0, f64::max);
         let scattered = self.noise.map(|noise| noise.sigma);
         if !size.is_finite() || within >= size {
-            let text = format!("must be less than the outline's size, {size:e} m, but is {within:e}");
+            let text = format!("must be less than the outline's size, {} m, but is {within:e}", six(size));
             let fair = self.noise.map_or(1e-3 * size, |noise| noise.distance(n));
             return Err((text, format!("a few times the scatter of its points is enough, such as {fair:.0e}")));
         }
@@ -54,12 +54,18 @@ impl Outline {
         let own = |k: usize| {
             let p = self.points[k];
             let far = |q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
-            if k < n { k } else if far(last) < far(first) { n - 1 } else { 0 }
+            if k < n {
+                k
+            } else if far(last) < far(first) {
+                n - 1
+            } else {
+                0
+            }
         };
         let pinned: Vec<usize> = corners.iter().map(|k| own(*k)).collect();
         let mut points = smooth(given, &pinned, within);
         let [most, rms] = moved(given, &points);
-        let area = 0.5 * twice_area(&points).abs();
+        let area = six(0.5 * twice_area(&points).abs());
         points.extend((n..self.points.len()).map(|k| points[own(k)]).collect::<Vec<_>>());
         let kept = match corners {
             [] => String::new(),
@@ -68,7 +74,7 @@ impl Outline {
         let scattered = scattered.map_or_else(String::new, |s| format!(" (they scattered by about {s:.0e} m)"));
         let told = format!(
             "smoothed within {within:e} m: its points were moved by {most:.1e} m at most, {rms:.1e} m rms{scattered}{kept}; the polygon \
-             through them has {area:.5e} m² then"
+             through them has {area} m² then"
         );
         let told = self.told.into_iter().chain([told]).collect::<Vec<_>>().join("; ");
         Ok(Outline { noise: noise(&points, corners), points, told: Some(told), corners: self.corners })
@@ -76,7 +82,7 @@ impl Outline {
 }
 
 /// The fitted points; the given ones, if none lie within the distance. Points are at least [`LEAST`], corners increase.
-fn smooth(given: &[[f64; 2]], corners: &[usize], within: f64) -> Vec<[f64; 2]> {
+pub(super) fn smooth(given: &[[f64; 2]], corners: &[usize], within: f64) -> Vec<[f64; 2]> {
     let size = extent(given).into_iter().fold(0.0, f64::max);
     let from = given.first().copied().unwrap_or_default();
     let points: Vec<[f64; 2]> = given.iter().map(|p| [0, 1].map(|c| (p[c] - from[c]) / size)).collect();
@@ -95,7 +101,7 @@ fn smooth(given: &[[f64; 2]], corners: &[usize], within: f64) -> Vec<[f64; 2]> {
 }
 
 /// The largest and the root mean square distance between points and those that they became.
-fn moved(from: &[[f64; 2]], to: &[[f64; 2]]) -> [f64; 2] {
+pub(super) fn moved(from: &[[f64; 2]], to: &[[f64; 2]]) -> [f64; 2] {
     let distances = from.iter().zip(to).map(|(p, q)| (p[0] - q[0]).hypot(p[1] - q[1]));
     let [most, sum] = distances.fold([0.0, 0.0], |[most, sum], d| [f64::max(most, d), sum + d * d]);
     [most, (sum / from.len() as f64).sqrt()]
