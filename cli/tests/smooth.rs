@@ -84,7 +84,10 @@ fn files_and_corners_are_smoothed_too() {
     assert_eq!(done.code, Some(0), "{}", done.err);
     let told = done.out.lines().find(|l| l.starts_with("outline of body1.link1: ")).unwrap();
     assert!(told.contains("wing.csv: 160 points") && told.contains("; smoothed within 6e-4 m: "), "{told}");
-    assert!(told.contains(", 1 corners kept; the polygon through them has 0.08"), "{told}");
+    assert!(
+        told.contains(", the corner at point 0 (counted from 0) kept; the polygon through them has 0.08"),
+        "{told}"
+    );
 }
 
 #[test]

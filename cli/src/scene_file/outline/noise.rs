@@ -20,8 +20,6 @@ const TRIMMED: f64 = 0.5243;
 const CLEAR: f64 = 0.1;
 /// … and second differences too: where points lie in a cloud the line turns anyhow.
 const TURNING: f64 = 0.25;
-/// Scatter is seen where second differences are at most this many times as large: the rest of them is the curve's own bend.
-const SEEN: f64 = 3.0;
 /// Differences of one order that are looked at, about: enough to know the scatter to 2 %.
 const ENOUGH: usize = 4096;
 /// Fewer points bend too much from one to the next to tell bends from scatter.
@@ -66,7 +64,8 @@ pub fn noise(points: &[[f64; 2]], corners: &[usize]) -> Option<Noise> {
         let (sigma, length) = (all[order], middle(lengths));
         // Scatter adds to the fluid's inertia, by mode k of n/2 that it excites alike, k σ²: n σ²/2 on a circle of radius 1.
         let part = 3.0 * sigma * sigma / (length / stride as f64 * size);
-        let matters = n >= MANY && order < 2 && all[0] <= SEEN * sigma && part > MATTERS;
+        // Where second or third differences agree with higher ones, they are not the curve's own bends.
+        let matters = n >= MANY && order < 2 && part > MATTERS;
         found = Some(Noise { sigma, matters });
         if sigma <= CLEAR * length && all[0] <= TURNING * length {
             break;

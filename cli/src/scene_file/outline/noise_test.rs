@@ -85,6 +85,17 @@ fn outlines_that_do_not_scatter_are_said_to_scatter_by_nothing() {
 }
 
 #[test]
+fn corners_that_are_known_are_not_taken_for_scatter() {
+    let teeth: Points = even(48)
+        .enumerate()
+        .map(|(k, t)| (TAU * t, if k % 2 == 0 { 0.4 } else { 0.5 }))
+        .map(|(t, r)| [r * t.cos(), r * t.sin()])
+        .collect();
+    assert_eq!(noise(&teeth, &(0..48).collect::<Vec<_>>()), None);
+    assert!(sigma(&teeth, &[]) > 1e-2);
+}
+
+#[test]
 fn scatter_is_found_within_a_factor_of_1_5() {
     let mut random = Random(2);
     for n in [60, 100, 200, 400] {
@@ -98,15 +109,17 @@ fn scatter_is_found_within_a_factor_of_1_5() {
                 let all: Vec<f64> =
                     (0..16).map(|_| sigma(&random.scattered(&points, given), corners) / given).collect();
                 let mean = (all.iter().map(|s| s.ln()).sum::<f64>() / 16.0).exp();
-                assert!((1.0 / 1.5..1.5).contains(&mean), "{n} {given} {mean}");
+                assert!((0.8..1.5).contains(&mean), "{n} {given} {mean}");
                 // One estimate from few points spreads by more.
                 assert!(all.iter().all(|s| (0.25..2.6).contains(s)), "{n} {given} {all:?}");
             }
         }
     }
     // Denser than they scatter: their order along the line is lost.
-    let dense = random.scattered(&ellipse(1.0, even(1600)), 1e-2);
-    assert!((sigma(&dense, &[]) / 1e-2 - 1.0).abs() < 0.2, "{}", sigma(&dense, &[]));
+    for _ in 0..40 {
+        let found = sigma(&random.scattered(&section("0012", 1601), 1e-2), &[0]) / 1e-2;
+        assert!((0.7..1.4).contains(&found), "{found}");
+    }
 }
 
 #[test]

@@ -13,8 +13,6 @@ use super::points::{Outline, distinct, extent, six, turn, twice_area};
 const LEAST: usize = 8;
 /// A corner turns by so many standard deviations of what scatter turns.
 const STANDS_OUT: f64 = 5.0;
-/// Fits, each by the lengths along the one before.
-const PASSES: usize = 3;
 /// Halvings of the logarithm of λ, to 1 % of it.
 const HALVINGS: usize = 14;
 /// Unlike lengths, relative to their mean, at least: what lies closer is taken apart by so much.
@@ -69,6 +67,7 @@ impl Outline {
         points.extend((n..self.points.len()).map(|k| points[own(k)]).collect::<Vec<_>>());
         let kept = match corners {
             [] => String::new(),
+            [k] => format!(", the corner at point {k} (counted from 0) kept"),
             corners => format!(", {} corners kept", corners.len()),
         };
         let scattered = scattered.map_or_else(String::new, |s| format!(" (they scattered by about {s:.0e} m)"));
@@ -89,15 +88,9 @@ pub(super) fn smooth(given: &[[f64; 2]], corners: &[usize], within: f64) -> Vec<
     let n = points.len();
     let mut pinned = vec![false; n];
     corners.iter().filter(|k| **k < n).for_each(|k| pinned[*k] = true);
-    let mut best = points.clone();
-    for _ in 0..PASSES {
-        let penalty = Penalty::along(&best, &pinned);
-        if let Some(fit) = penalty.within(&points, &pinned, within / size) {
-            best = fit;
-        }
-    }
+    let fit = Penalty::along(&points, &pinned).within(&points, &pinned, within / size).unwrap_or(points);
     let back = |(k, q): (usize, &[f64; 2])| if pinned[k] { given[k] } else { [0, 1].map(|c| from[c] + size * q[c]) };
-    best.iter().enumerate().map(back).collect()
+    fit.iter().enumerate().map(back).collect()
 }
 
 /// The largest and the root mean square distance between points and those that they became.
@@ -153,9 +146,9 @@ impl Penalty {
         };
         let weights = self.rows.iter().flatten().flatten();
         let stiff = weights.fold(0.0, |w: f64, x| w.max(x.abs()));
-        // From a fit that gives way to nothing but waves of two points, by 1e-4, to one that follows nothing but ellipses.
+        // From a fit that hardly moves any point to one that follows nothing but ellipses, to 1e-4.
+        let mut low = (1e-3 * most).ln() - 2.0 * stiff.ln();
         let mut high = (6e4 * n).ln().min(2.0 * (STIFFEST / stiff).ln());
-        let mut low = (6e-4 * n).ln() - 6.0 * n.ln();
         if let Some(all) = fit(high) {
             return Some(all);
         }
@@ -272,7 +265,6 @@ impl System {
                     return;
                 }
                 own.rotate(&mut row, a, b);
-                row.border[k] = 0.0;
             }
         }
     }
