@@ -16,10 +16,8 @@ const AGREE: f64 = 1.6;
 const KEPT: (usize, usize) = (2, 3);
 /// The root of the mean square of the smaller two thirds of the values of a normal distribution of deviation 1.
 const TRIMMED: f64 = 0.5243;
-/// Lengths between points are those of the curve while the scatter is at most this part of them …
-const CLEAR: f64 = 0.1;
-/// … and second differences too: where points lie in a cloud the line turns anyhow.
-const TURNING: f64 = 0.25;
+/// Lengths between points are those of the curve while the line turns by at most this angle at most of them.
+const CLEAR: f64 = 0.5;
 /// Differences of one order that are looked at, about: enough to know the scatter to 2 %.
 const ENOUGH: usize = 4096;
 /// Fewer points bend too much from one to the next to tell bends from scatter.
@@ -56,18 +54,24 @@ pub fn noise(points: &[[f64; 2]], corners: &[usize]) -> Option<Noise> {
     let mut stride = 1;
     while n / stride >= LEAST {
         let lengths: Vec<f64> = (0..n).map(|i| gap(points[i], points[(i + stride) % n])).collect();
+        let turn = |i: usize| {
+            let [a, b, c] = [0, 1, 2].map(|j| points[(i + j * stride) % n]);
+            let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+            (u[0] * v[1] - u[1] * v[0]).abs().atan2(u[0] * v[0] + u[1] * v[1])
+        };
         let over = |order: &usize| across(points, &lengths, &before, stride, *order);
         let all: Vec<f64> = ORDERS.iter().map_while(over).collect();
         let Some(least) = all.iter().copied().reduce(f64::min) else { break };
         // The lowest of those that agree: its values depend least on one another.
         let order = all.iter().position(|s| *s <= AGREE * least)?;
-        let (sigma, length) = (all[order], middle(lengths));
+        let sigma = all[order];
         // Scatter adds to the fluid's inertia, by mode k of n/2 that it excites alike, k σ²: n σ²/2 on a circle of radius 1.
-        let part = 3.0 * sigma * sigma / (length / stride as f64 * size);
+        let part = 3.0 * sigma * sigma / (middle(lengths) / stride as f64 * size);
         // Where second or third differences agree with higher ones, they are not the curve's own bends.
-        let matters = n >= MANY && order < 2 && part > MATTERS;
+        let seen = found.is_some_and(|before: Noise| before.matters);
+        let matters = seen || (n / stride >= MANY && order < 2 && part > MATTERS);
         found = Some(Noise { sigma, matters });
-        if sigma <= CLEAR * length && all[0] <= TURNING * length {
+        if middle((0..n).map(turn).collect()) <= CLEAR {
             break;
         }
         // Points so dense that they scatter along the line too: look at every second, third, … of them.
