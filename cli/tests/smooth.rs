@@ -57,6 +57,10 @@ fn points_that_scatter_are_told_with_what_helps() {
         "{}",
         done.out
     );
+    // A distance that is too short gets the same advice.
+    let (_, json) = evaluated(&smoothed("smooth = 1e-3"));
+    let short = json["outlines"]["body1.link1"].as_str().unwrap();
+    assert!(short.starts_with("smoothed within 1e-3 m: ") && short.contains(help), "{short}");
     // What the advice says, done.
     let start = told.find("smooth = ").unwrap();
     let advice = told[start..].split('`').next().unwrap();

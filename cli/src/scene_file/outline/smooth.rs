@@ -6,7 +6,7 @@
 //! divided differences, the trigonometric ones for κ > 0; least squares by rotations, since normal equations would lose the digits
 //! of long waves. O(points).
 
-use super::noise::noise;
+use super::noise::{Noise, noise};
 use super::points::{Outline, distinct, extent, six, turn, twice_area};
 
 /// Fewer points are a shape, not a fit.
@@ -76,7 +76,11 @@ impl Outline {
              through them has {area} m² then"
         );
         let told = self.told.into_iter().chain([told]).collect::<Vec<_>>().join("; ");
-        Ok(Outline { noise: noise(&points, corners), points, told: Some(told), corners: self.corners })
+        // What is left tells that the distance was too short; what there was, which one is long enough.
+        let left = noise(&points, corners);
+        let noise =
+            left.map(|left| Noise { sigma: self.noise.map_or(left.sigma, |n| n.sigma.max(left.sigma)), ..left });
+        Ok(Outline { noise, points, told: Some(told), corners: self.corners })
     }
 }
 
