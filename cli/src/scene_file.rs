@@ -110,8 +110,9 @@ impl SceneFile {
         self.bodies.iter().flat_map(BodyDef::signals).flat_map(signal::SignalDef::notices).collect()
     }
 
-    /// Every outline: whose it is, where the core has it, and what the user is told of points that are not in the scene file.
-    pub fn outlines(&self) -> impl Iterator<Item = (String, Place, Option<&str>)> {
+    /// Every outline: whose it is, where the core has it, and what the user is told of points that are not in the scene file
+    /// or scatter.
+    pub fn outlines(&self) -> impl Iterator<Item = (String, Place, Option<String>)> {
         self.shapes().map(|(whose, place, shape)| (whose, place, shape.told()))
     }
 
@@ -240,9 +241,10 @@ impl SceneFile {
                 listed(&points)
             )
         });
+        let bends = || "give more where it bends, or name its corners in `corners`".to_owned();
+        let help = self.shape(place).and_then(ShapeDef::scatter).unwrap_or_else(bends);
         format!(
-            "its points tell its outline no better than to about {} of added mass, which no bound contains: give more where it bends, or name \
-             its corners in `corners`{sharp}",
+            "its points tell its outline no better than to about {} of added mass, which no bound contains: {help}{sharp}",
             percent(error)
         )
     }

@@ -112,8 +112,7 @@ impl Setup {
     /// Whose outlines are given by points, what was read of them, and how well these tell them.
     pub fn outlines(&self) -> Vec<(String, String)> {
         let view = self.model.view();
-        let line = |(whose, place, told): (String, Place, Option<&str>)| {
-            let told = told.map(str::to_owned);
+        let line = |(whose, place, told): (String, Place, Option<String>)| {
             let known = view.outline_error(place).map(|e| format!("its points tell it to about {}", percent(e)));
             let all: Vec<String> = told.into_iter().chain(known).collect();
             (!all.is_empty()).then(|| (whose, all.join("; ")))

@@ -6,8 +6,14 @@ mod drawing;
 #[cfg(test)]
 mod drawing_test;
 pub mod naca;
+mod noise;
+#[cfg(test)]
+mod noise_test;
 mod path;
 mod points;
+pub mod smooth;
+#[cfg(test)]
+mod smooth_test;
 #[cfg(test)]
 mod tests;
 
@@ -16,6 +22,7 @@ use std::path::Path;
 use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
+pub use noise::noise;
 use points::MOST;
 pub use points::{Outline, turn};
 

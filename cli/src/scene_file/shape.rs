@@ -3,7 +3,7 @@
 use nekton::scene::{Corners, Shape};
 
 use super::outline::naca::{Naca, POINTS, Tail};
-use super::outline::{Outline, turn};
+use super::outline::{Outline, noise, smooth, turn};
 use super::reader::{Item, Outcome, Section};
 
 /// A turn in degrees of a point of a smooth curve that is named.
@@ -68,6 +68,7 @@ impl ShapeDef {
             "tail",
             "corners",
             "path",
+            "smooth",
         ];
         let section = item.section("`shape`", KEYS)?;
         let (kind, value) = section.one_of(KINDS)?;
@@ -89,12 +90,18 @@ impl ShapeDef {
             Some(c) if !matches!(kind, "curve" | "naca") => return Err(c.problem("is for `curve` and `naca` only")),
             other => other,
         };
+        let within = match section.get("smooth") {
+            Some(s) if kind != "curve" => return Err(s.problem("is for `curve` only, whose points may scatter")),
+            other => other,
+        };
         let curve = |outline: Outline| {
             let corners = corners.as_ref().map(|c| CornersDef::read(c, outline.points.len())).transpose()?;
             // A picture knows its corners.
             let known = || outline.corners.clone().map_or(CornersDef::Word(Corners::Auto), CornersDef::At);
             let corners = corners.unwrap_or_else(known);
-            Ok(ShapeDef::Curve(outline, corners))
+            let curve = ShapeDef::Curve(outline, corners);
+            // A formula's points do not scatter.
+            Ok(if kind == "curve" { curve.fitted(within.as_ref())? } else { curve })
         };
         let measures = || {
             let pair = value.pair()?;
@@ -134,6 +141,35 @@ impl ShapeDef {
         })
     }
 
+    /// A curve whose scatter is known, and which is smoothed if that is asked for.
+    fn fitted(self, within: Option<&Item<'_>>) -> Outcome<Self> {
+        let mut corners = Vec::new();
+        self.core().each_corner(|k| corners.push(k));
+        let ShapeDef::Curve(mut outline, def) = self else { return Ok(self) };
+        outline.noise = noise(&outline.points, &corners);
+        let Some(item) = within else { return Ok(ShapeDef::Curve(outline, def)) };
+        let distance = item.positive()?;
+        if matches!(def, CornersDef::Word(Corners::Auto)) {
+            // A turn that scatter makes is no corner.
+            let sigma = outline.noise.map_or(0.0, |n| n.sigma);
+            corners.retain(|k| smooth::stands_out(&outline.points, *k, sigma));
+        }
+        let smoothed = outline.smoothed(&corners, distance).map_err(|(why, hint)| item.problem(why).hint(hint))?;
+        let def = if corners.is_empty() { CornersDef::Word(Corners::None) } else { CornersDef::At(corners) };
+        Ok(ShapeDef::Curve(smoothed, def))
+    }
+
+    /// What would help against scatter that matters.
+    pub fn scatter(&self) -> Option<String> {
+        let ShapeDef::Curve(outline, _) = self else { return None };
+        let noise = outline.noise.filter(|n| n.matters)?;
+        let distance = noise.distance(outline.points.len());
+        Some(format!(
+            "its points scatter by about {:.0e} m across it: `smooth = {distance:.1e}` beside `curve` fits one within that distance of them",
+            noise.sigma
+        ))
+    }
+
     /// The core's description of it.
     pub fn core(&self) -> Shape<'_, f64> {
         match self {
@@ -167,12 +203,11 @@ impl ShapeDef {
         (!sharp.is_empty()).then(|| (sharp.into_iter().map(|(k, _)| k).collect(), most))
     }
 
-    /// What the user is told of points that the scene file does not show.
-    pub fn told(&self) -> Option<&str> {
-        match self {
-            ShapeDef::Curve(outline, _) => outline.told.as_deref(),
-            _ => None,
-        }
+    /// What the user is told of points that the scene file does not show, and of points that scatter.
+    pub fn told(&self) -> Option<String> {
+        let ShapeDef::Curve(outline, _) = self else { return None };
+        let all: Vec<String> = outline.told.clone().into_iter().chain(self.scatter()).collect();
+        (!all.is_empty()).then(|| all.join("; "))
     }
 }
 

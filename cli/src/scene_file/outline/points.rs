@@ -1,5 +1,7 @@
 //! The points of an outline and what is told of them.
 
+use super::noise::Noise;
+
 /// Points of a file, at most.
 pub const MOST: usize = 100_000;
 
@@ -23,6 +25,8 @@ pub struct Outline {
     pub told: Option<String>,
     /// Which points are corners, if that is known.
     pub corners: Option<Vec<usize>>,
+    /// By how much the points scatter, if that is looked at and they are enough.
+    pub noise: Option<Noise>,
 }
 
 impl Outline {
@@ -33,12 +37,28 @@ impl Outline {
 
     /// Points of which nothing is told.
     pub fn of(points: Vec<[f64; 2]>) -> Self {
-        Outline { points, told: None, corners: None }
+        Outline { points, told: None, corners: None, noise: None }
     }
 
     pub fn described(self, from: &str) -> Self {
         Outline { told: Some(format!("{from}: {}", description(&self.points))), ..self }
     }
+}
+
+/// Points without those at the end that repeat the first or the one before, to a millionth of their mean distance, as the core drops them.
+pub fn distinct(points: &[[f64; 2]]) -> &[[f64; 2]] {
+    let mut rest = points;
+    let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+    let way: f64 = points.windows(2).map(|w| gap(w[0], w[1])).sum();
+    while let (&[first, .., before, last], true) = (rest, rest.len() > 3) {
+        let nearest = gap(last, first).min(gap(last, before));
+        let near = nearest <= 1e-3 * gap(first, before) && nearest <= 1e-6 * way / points.len() as f64;
+        if nearest > 0.0 && !near {
+            break;
+        }
+        rest = &rest[..rest.len() - 1];
+    }
+    rest
 }
 
 /// Twice the signed area of the polygon through points.
@@ -50,24 +70,27 @@ pub fn twice_area(points: &[[f64; 2]]) -> f64 {
 }
 
 /// A number with six digits.
-fn six(x: f64) -> f64 {
+pub fn six(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// Sizes along x and along y.
+pub fn extent(points: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|c| {
+        let all = points.iter().map(|p| p[c]);
+        let [a, b] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        b - a
+    })
 }
 
 /// Number of points, direction, extent along x and y, and the area of the polygon through the points.
 pub fn description(points: &[[f64; 2]]) -> String {
-    let range = |c: usize| {
-        let all = points.iter().map(|p| p[c]);
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
-    };
     let twice = twice_area(points);
     let way = if twice < 0.0 { "clockwise" } else { "counter-clockwise" };
-    let size = |[a, b]: [f64; 2]| six(b - a);
+    let [along, up] = extent(points).map(six);
     format!(
-        "{} points, {way}, chord (along x) {} m, height (along y) {} m, area of the polygon through them {} m²",
+        "{} points, {way}, chord (along x) {along} m, height (along y) {up} m, area of the polygon through them {} m²",
         points.len(),
-        size(range(0)),
-        size(range(1)),
         six(0.5 * twice.abs())
     )
 }
