@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 const USAGE: &str = "usage: cargo xtask mutants [--first N] [--minutes M] [--again] [--list]
 
   --first N    only the first N changes of the sample, as a trial; docs/mutants.csv is not written
-  --minutes M  begin no change after M minutes (the next call goes on)
+  --minutes M  begin no change after M minutes; the next call goes on, here or, by docs/mutants.csv, on another machine
   --again      try again what survived, by all tests (else by those that are new, and without what is listed as equivalent)
   --list       print the sample and try nothing
 ";
@@ -103,12 +103,13 @@ fn run(folders: &Folders, options: &Options) -> Result<bool, String> {
         results.forget_survivors();
     }
     let equivalent = table::equivalents(&folders.root.join("tests/mutants/equivalent.csv"))?;
-    trial::run(&order, &chosen, &tests, &mut results, &table::listed(&order, &equivalent), end)?;
+    let path = folders.root.join("docs/mutants.csv");
+    let known = (&table::listed(&order, &equivalent), &table::hints(&path, &order));
+    trial::run(&order, &chosen, &tests, &mut results, known, end)?;
     let report = table::Report::new(&order, &chosen, &results, &equivalent);
     report.print();
     println!("{:.0} minutes", start.elapsed().as_secs_f64() / 60.0);
-    if options.first == SAMPLE && report.complete() {
-        let path = folders.root.join("docs/mutants.csv");
+    if options.first == SAMPLE {
         std::fs::write(&path, report.csv()).map_err(|error| format!("{}: {error}", path.display()))?;
         println!("written: docs/mutants.csv");
     }

@@ -128,6 +128,20 @@ pub fn equivalents(path: &Path) -> Result<BTreeMap<Key, String>, String> {
     Ok(out)
 }
 
+/// By the table of an earlier run, on whatever machine and however core has changed since: which test noticed a change. It is
+/// tried first.
+pub fn hints(path: &Path, order: &Order) -> BTreeMap<usize, String> {
+    let mut killers = BTreeMap::new();
+    for row in std::fs::read_to_string(path).unwrap_or_default().lines().map(fields) {
+        if let [file, _, column, function, _, code, change, _, by] = row.as_slice() {
+            let key: Key = [file, function, code, column, change].map(Clone::clone);
+            killers.insert(key, by.clone());
+        }
+    }
+    let all = order.mutants.iter().enumerate();
+    all.filter_map(|(id, m)| killers.get(&key(m)).map(|by| (id, by.clone()))).collect()
+}
+
 /// The table and its sums.
 pub struct Report<'a> {
     rows: Vec<(&'a Mutant, Option<&'a Outcome>, Option<&'a String>)>,

@@ -210,13 +210,20 @@ impl Luck {
 }
 
 /// Tries one change by the tests that were built since the time `tried`.
-fn one(id: usize, mutant: &Mutant, tests: &Tests, tried: u64, luck: &Mutex<Luck>) -> Result<Outcome, String> {
+fn one(
+    id: usize,
+    mutant: &Mutant,
+    (tests, hint): (&Tests, Option<&String>),
+    tried: u64,
+    luck: &Mutex<Luck>,
+) -> Result<Outcome, String> {
     let begun = seconds(SystemTime::now());
     let passing = || tests.all.iter().filter(|test| test.passes.contains(&id));
     let mut order: Vec<&Test> = passing().filter(|test| test.built >= tried).collect();
     if let Ok(luck) = luck.lock() {
         order.sort_by(|a, b| luck.cost(a, &mutant.file).total_cmp(&luck.cost(b, &mutant.file)));
     }
+    order.sort_by_key(|test| hint.is_none_or(|hint| test.name() != *hint));
     for test in &order {
         let limit = Duration::from_secs_f64(5.0 + 10.0 * test.seconds);
         let ended = run_test(test, &id.to_string(), None, limit)?;
@@ -238,7 +245,7 @@ pub fn run(
     chosen: &[usize],
     tests: &Tests,
     results: &mut Results,
-    equivalent: &BTreeSet<usize>,
+    (equivalent, hints): (&BTreeSet<usize>, &BTreeMap<usize, String>),
     end: Option<Instant>,
 ) -> Result<(), String> {
     // Of what survived, those that a test passes which was built since, but for those that are known to change nothing.
@@ -270,7 +277,7 @@ pub fn run(
                         Some(Outcome::Survived(_, tried)) => tried,
                         _ => 0,
                     };
-                    let told = one(id, mutant, tests, tried, luck).and_then(|outcome| {
+                    let told = one(id, mutant, (tests, hints.get(&id)), tried, luck).and_then(|outcome| {
                         let word = match &outcome {
                             Outcome::Killed(test) => format!("killed by {test}"),
                             Outcome::Stuck(test) => format!("killed by the time of {test}"),
