@@ -1,6 +1,8 @@
 //! Derivatives of forces and motion against differences of eighth order, identities and closed forms.
 
-use nekton::scene::{Drive, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Repulsion, Scene, Shape, Signal, Wall};
+use nekton::scene::{
+    CirculationModel, Drive, Harmonic, Joint, JointKind, Link, Mass, Quadrature, Repulsion, Scene, Shape, Signal, Wall,
+};
 use nekton::{Parameter, Sim, SimBuf};
 use nekton_tests::*;
 
@@ -30,7 +32,11 @@ fn residual(sim: &mut Sim<'_, f64>, y: &[f64], qdd: &[f64]) -> Vec<f64> {
         vector(sim, |sim, out| sim.repulsion(out)),
         vector(sim, |sim, out| sim.christoffel(out)),
     ];
-    let force = |a: usize| parts.iter().map(|p| p[a]).sum::<f64>();
+    let circulation = vector(sim, |sim, out| sim.circulation_gradient(out));
+    let gyroscopic = matrix(sim, |sim, out| sim.gyroscopic(out));
+    let velocities = sim.velocities().to_vec();
+    let turning = |a: usize| gyroscopic.iter().zip(&velocities).map(|(column, v)| column[a] * v).sum::<f64>();
+    let force = |a: usize| circulation[a] - turning(a) + parts.iter().map(|p| p[a]).sum::<f64>();
     (0..qdd.len()).map(|a| force(a) + mass.iter().zip(qdd).map(|(column, w)| column[a] * w).sum::<f64>()).collect()
 }
 
@@ -116,6 +122,24 @@ fn derivatives_of_the_force_are_exact_at_any_resolution() {
             check(&format!("{place}, {nodes}"), scene, 2e-3, 5e-12)
         });
     }
+}
+
+#[test]
+fn derivatives_with_circulation_are_those_of_its_force() {
+    let mut links = links(24);
+    for (link, circulation) in links.iter_mut().zip([0.8, -0.5, 0.3]) {
+        link[0].circulation = circulation;
+    }
+    let bodies: Vec<_> = (0..3).map(|k| body(&links[k], POSES[k], VELOCITIES[k])).collect();
+    let obstacles = [Wall { circulation: 0.4, ..obstacle()[0] }];
+    let quadrature = Quadrature::Plain;
+    let alone = Scene { quadrature, bodies: &bodies, allow_unresolved: true, ..Scene::new(1.3, 9.81) };
+    check("lone, closed form", &Scene { bodies: &bodies[..1], ..alone }, 2e-3, 5e-12);
+    check("unbounded", &alone, 2e-3, 1e-10);
+    check("obstacle", &Scene { obstacles: &obstacles, ..alone }, 2e-3, 1e-10);
+    check_motion("motion with circulation", &alone);
+    let paper = Scene { circulation: CirculationModel::Paper, ..alone };
+    check("the paper's model", &paper, 2e-3, 1e-10);
 }
 
 #[test]

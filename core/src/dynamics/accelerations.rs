@@ -139,7 +139,7 @@ impl<R: Real> Evaluation<'_, R> {
     }
 
     /// Adds ∂T_c/∂q − G q̇ to `outer`.
-    fn add_circulation(&mut self, model: &Model<'_, R>) {
+    pub(crate) fn add_circulation(&mut self, model: &Model<'_, R>) {
         let (c, head) = (&self.placement.configuration(model), model.head);
         if !head.plan.circulation {
             return;

@@ -8,7 +8,7 @@
 
 use crate::base::complex::{Complex, complex, perp};
 use crate::base::features;
-use crate::base::lanes::{LANES, sum_of};
+use crate::base::lanes::{LANES, lanes, put_lanes, sum_of};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{add, at, buffers, part, part_mut, put};
 use crate::base::once::once;
@@ -34,7 +34,7 @@ buffers! {
         /// D u, E u and D w at the target's nodes · 3 complex columns.
         velocities: R = VELOCITIES * longest.next_multiple_of(LANES),
         /// λᵀ D, (λ X)ᵀ D, the same of μ, (λ ż)ᵀ E, (λ ż X)ᵀ E at the source's nodes · 6 complex columns.
-        sums: R = SUMS * *longest,
+        sums: R = SUMS * longest.next_multiple_of(LANES),
     }
 }
 
@@ -109,6 +109,7 @@ struct PairOf<'a, R> {
 /// Reals of a vector of lanes of the target's nodes: positions and weights; velocities.
 const TARGET: usize = WEIGHTS * LANES;
 const VELOCITY: usize = VELOCITIES * LANES;
+const SUM: usize = SUMS * LANES;
 
 impl<R: Real> PairOf<'_, R> {
     /// The target's nodes in vectors of lanes: place in the source's frame, λ, λ X, μ, μ X, λ ż, λ ż X.
@@ -146,7 +147,7 @@ impl<R: Real> PairOf<'_, R> {
         [
             part_mut(s.targets, 0, blocks * TARGET),
             part_mut(s.velocities, 0, blocks * VELOCITY),
-            part_mut(s.sums, 0, SUMS * self.source.nodes),
+            part_mut(s.sums, 0, self.source.nodes.div_ceil(LANES) * SUM),
         ]
     }
 }
@@ -172,7 +173,7 @@ impl<R: Real> Task for Kernel<'_, '_, '_, R> {
         let m = source.nodes;
         let densities = part(from.density, source.first, m).iter().zip(part(from.second_density, source.first, m));
         let points = nodes.points().zip(nodes.tangents()).zip(densities);
-        for (((g, dg), (one, two)), sums) in points.zip(sums.as_chunks_mut::<SUMS>().0) {
+        for (k, ((g, dg), (one, two))) in points.enumerate() {
             let weight = dg * factor;
             let of = [weight * *one, weight * (*one + *one), weight * *two];
             let mut total = [[R::zero(); LANES]; SUMS];
@@ -185,15 +186,20 @@ impl<R: Real> Task for Kernel<'_, '_, '_, R> {
             let total = core::hint::black_box(total);
             let twice = weight + weight;
             let weights = [weight, weight, weight, weight, twice, twice];
-            for ((out, total), weight) in
-                sums.as_chunks_mut::<2>().0.iter_mut().zip(total.as_chunks::<2>().0).zip(weights)
-            {
+            for (c, (total, weight)) in total.as_chunks::<2>().0.iter().zip(weights).enumerate() {
                 let [x, y] = *total;
                 let value = complex(sum_of(x), sum_of(y)) * weight;
-                *out = [value.re, value.im];
+                put(sums, sum_at(k, 2 * c), value.re);
+                put(sums, sum_at(k, 2 * c + 1), value.im);
             }
         }
     }
+}
+
+/// Where column `c` of the source's node `k` is.
+#[inline(always)]
+fn sum_at(k: usize, c: usize) -> usize {
+    k / LANES * SUM + c * LANES + k % LANES
 }
 
 /// Eight nodes of the target and one of the source: velocities there, and the source's sums.
@@ -292,8 +298,8 @@ impl<R: Real> PairOf<'_, R> {
                 }
                 for (c, (w, x)) in of.iter().zip([d, d, d, d, e, e]).enumerate() {
                     let term = *w * x;
-                    add(sums, k * SUMS + 2 * c, term.re);
-                    add(sums, k * SUMS + 2 * c + 1, term.im);
+                    add(sums, sum_at(k, 2 * c), term.re);
+                    add(sums, sum_at(k, 2 * c + 1), term.im);
                 }
             });
             for (c, sum) in found.iter().enumerate() {
@@ -363,40 +369,17 @@ impl<R: Real> Task for Distribute<'_, '_, '_, '_, R> {
             link.into_iter().flat_map(move |link| (0..3).map(move |k| (3 * link + k, motion(k))))
         });
         let [targets, velocities, sums] = pair.scratch(s);
-        let [w0, w1] = frames.rate(&actual);
-        let rows = 3 * c.model.links.len();
         let moments = moments(&pair, targets, velocities);
+        let rows = 3 * c.model.links.len();
+        combine(&pair.target_nodes, frames.rate(&actual), velocities);
         for (b, motion) in units.clone() {
             let (v, a) = (frames.rate(&motion), frames.second(&motion, &actual));
-            let (first, n) = (pair.target.first, pair.target.nodes);
-            let (rates, seconds) =
-                (part_mut(out.rate, b * out.ld + first, n), part_mut(out.second, b * out.ld + first, n));
-            let mut x = pair.target_nodes.x.iter().zip(pair.target_nodes.y);
-            for ((velocity, rates), seconds) in
-                velocities.as_chunks::<VELOCITY>().0.iter().zip(rates.chunks_mut(LANES)).zip(seconds.chunks_mut(LANES))
-            {
-                let [hx, hy, kx, ky, gx, gy] = velocity.as_chunks::<LANES>().0 else { continue };
-                let h = hx.iter().zip(hy).zip(kx.iter().zip(ky)).zip(gx.iter().zip(gy));
-                for ((rate, second), ((((hx, hy), (kx, ky)), (gx, gy)), (x, y))) in
-                    rates.iter_mut().zip(seconds).zip(h.zip(&mut x))
-                {
-                    let x = complex(*x, *y);
-                    let (zd, w, zdd) = (v[0] + v[1] * x, w0 + w1 * x, a[0] + a[1] * x);
-                    let (h, k, g) = (complex(*hx, *hy), complex(*kx, *ky), complex(*gx, *gy));
-                    *rate += zd.re * h.im + zd.im * h.re;
-                    *second += (zd * (w * k + g) + zdd * h).im;
-                }
-            }
-            let (first, m) = (pair.source.first, pair.source.nodes);
-            let (rates, seconds) = (
-                part_mut(out.transposed, b * out.ld + first, m),
-                part_mut(out.second_transposed, b * out.ld + first, m),
-            );
-            for ((rate, second), sums) in rates.iter_mut().zip(seconds).zip(sums.as_chunks::<SUMS>().0) {
-                let [p0, p1, q0, q1, e0, e1] = [0, 2, 4, 6, 8, 10].map(|k| complex(at(sums, k), at(sums, k + 1)));
-                *rate += (v[0] * p0 + v[1] * p1).im;
-                *second += (v[0] * (e0 + q0) + v[1] * (e1 + q1) + a[0] * p0 + a[1] * p1).im;
-            }
+            let (first, n) = (b * out.ld + pair.target.first, pair.target.nodes);
+            let columns = [part_mut(out.rate, first, n), part_mut(out.second, first, n)];
+            add_on_target(&pair.target_nodes, [v, a], velocities, columns);
+            let (first, m) = (b * out.ld + pair.source.first, pair.source.nodes);
+            let columns = [part_mut(out.transposed, first, m), part_mut(out.second_transposed, first, m)];
+            add_on_source([v, a], sums, columns);
             let [m0, m1, n0, n1, n2] = moments;
             for (other, along) in units.clone() {
                 let (w, a) = (frames.rate(&along), frames.second(&motion, &along));
@@ -404,6 +387,74 @@ impl<R: Real> Task for Distribute<'_, '_, '_, '_, R> {
                 add(out.hessian, b * rows + other, (twice + a[0] * m0 + a[1] * m1).im);
             }
         }
+    }
+}
+
+/// What all motions of a pair have in common: D w + ż ∘ E u in place of D w.
+#[inline(always)]
+fn combine<R: Real>(nodes: &Nodes<'_, R>, [w0, w1]: [Complex<R>; 2], velocities: &mut [R]) {
+    let places = nodes.x.chunks(LANES).zip(nodes.y.chunks(LANES));
+    for (block, (x, y)) in velocities.as_chunks_mut::<VELOCITY>().0.iter_mut().zip(places) {
+        let [_, _, kx, ky, gx, gy] = block.as_chunks_mut::<LANES>().0 else { continue };
+        let (x, y) = (lanes(x, R::zero()), lanes(y, R::zero()));
+        for ((((gx, gy), kx), ky), (x, y)) in gx.iter_mut().zip(gy).zip(kx).zip(ky).zip(x.iter().zip(&y)) {
+            let (re, im) = (w0.re + (w1.re * *x - w1.im * *y), w0.im + (w1.re * *y + w1.im * *x));
+            (*gx, *gy) = (*gx + (re * *kx - im * *ky), *gy + (re * *ky + im * *kx));
+        }
+    }
+}
+
+/// Adds Im((v₀ + v₁ X) h), and Im((v₀ + v₁ X) g + (a₀ + a₁ X) h), on the target's nodes.
+#[inline(always)]
+fn add_on_target<R: Real>(
+    nodes: &Nodes<'_, R>,
+    [[v0, v1], [a0, a1]]: [[Complex<R>; 2]; 2],
+    velocities: &[R],
+    [rates, seconds]: [&mut [R]; 2],
+) {
+    let columns = rates.chunks_mut(LANES).zip(seconds.chunks_mut(LANES));
+    let places = nodes.x.chunks(LANES).zip(nodes.y.chunks(LANES));
+    for ((block, (x, y)), (rates, seconds)) in velocities.as_chunks::<VELOCITY>().0.iter().zip(places).zip(columns) {
+        let [hx, hy, _, _, gx, gy] = block.as_chunks::<LANES>().0 else { continue };
+        let (x, y) = (lanes(x, R::zero()), lanes(y, R::zero()));
+        let (mut rate, mut second) = (lanes(rates, R::zero()), lanes(seconds, R::zero()));
+        let found = hx.iter().zip(hy).zip(gx.iter().zip(gy));
+        for (((rate, second), (x, y)), ((hx, hy), (gx, gy))) in
+            rate.iter_mut().zip(&mut second).zip(x.iter().zip(&y)).zip(found)
+        {
+            let (vx, vy) = (v0.re + (v1.re * *x - v1.im * *y), v0.im + (v1.re * *y + v1.im * *x));
+            let (ax, ay) = (a0.re + (a1.re * *x - a1.im * *y), a0.im + (a1.re * *y + a1.im * *x));
+            *rate += vx * *hy + vy * *hx;
+            *second += (vx * *gy + vy * *gx) + (ax * *hy + ay * *hx);
+        }
+        put_lanes(rate, rates);
+        put_lanes(second, seconds);
+    }
+}
+
+/// Adds Im(v₀ p₀ + v₁ p₁), and Im(v₀ q₀ + v₁ q₁ + a₀ p₀ + a₁ p₁), on the source's nodes.
+#[inline(always)]
+fn add_on_source<R: Real>([[v0, v1], [a0, a1]]: [[Complex<R>; 2]; 2], sums: &[R], [rates, seconds]: [&mut [R]; 2]) {
+    let columns = rates.chunks_mut(LANES).zip(seconds.chunks_mut(LANES));
+    for (block, (rates, seconds)) in sums.as_chunks::<SUM>().0.iter().zip(columns) {
+        let [p0x, p0y, p1x, p1y, q0x, q0y, q1x, q1y, e0x, e0y, e1x, e1y] = block.as_chunks::<LANES>().0 else {
+            continue;
+        };
+        let (mut rate, mut second) = (lanes(rates, R::zero()), lanes(seconds, R::zero()));
+        for ((rate, (x, y)), (z, w)) in rate.iter_mut().zip(p0x.iter().zip(p0y)).zip(p1x.iter().zip(p1y)) {
+            *rate += (v0.re * *y + v0.im * *x) + (v1.re * *w + v1.im * *z);
+        }
+        for ((second, (x, y)), (z, w)) in second.iter_mut().zip(p0x.iter().zip(p0y)).zip(p1x.iter().zip(p1y)) {
+            *second += (a0.re * *y + a0.im * *x) + (a1.re * *w + a1.im * *z);
+        }
+        for (zero, one) in [([q0x, q0y], [q1x, q1y]), ([e0x, e0y], [e1x, e1y])] {
+            let parts = zero[0].iter().zip(zero[1]).zip(one[0].iter().zip(one[1]));
+            for (second, ((x, y), (z, w))) in second.iter_mut().zip(parts) {
+                *second += (v0.re * *y + v0.im * *x) + (v1.re * *w + v1.im * *z);
+            }
+        }
+        put_lanes(rate, rates);
+        put_lanes(second, seconds);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::base::memory::copy;
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::derivatives::motion::{Linearizer, MotionDims, MotionScratch, Parameter};
-use crate::dynamics::derivatives::{DerivativeDims, Derivatives, supported};
+use crate::dynamics::derivatives::{DerivativeDims, Derivatives, by_differences, supported};
 use crate::fluid::tangent_pass::TangentScratch;
 use crate::model::Model;
 use crate::simulation::sim::Sim;
@@ -68,10 +68,26 @@ impl<R: Real> Sim<'_, R> {
         let mut d = Derivatives::take(&dims, rest).map_err(short)?;
         let mut s = TangentScratch::take(&dims.longest, rest).map_err(short)?;
         self.evaluated()?;
+        self.differentiate_circulation(&mut d)?;
         self.evaluation.force_derivatives(&model, qdd, &mut d, &mut s);
         copy(position, d.position);
         copy(velocity, d.velocity);
         Ok(())
+    }
+
+    /// Begins H and C with the part that takes evaluations elsewhere, and evaluates the state shown again.
+    fn differentiate_circulation(&mut self, d: &mut Derivatives<'_, R>) -> Result<()> {
+        let model = self.model;
+        if !by_differences(&model) {
+            return Ok(());
+        }
+        d.position.fill(R::zero());
+        d.velocity.fill(R::zero());
+        let gap = self.gap().distance;
+        let done = self.evaluation.add_circulation_derivatives(&model, gap, d.position, d.velocity);
+        self.evaluation.kept.shown = false;
+        done?;
+        self.refresh()
     }
 
     fn motion_dims(model: &Model<'_, R>) -> MotionDims {
@@ -113,10 +129,11 @@ impl<R: Real> Sim<'_, R> {
         let short = |e: Error| if e.status == Status::MemoryTooSmall { e.of("length", given) } else { e };
         let dims = DerivativeDims::of(&model);
         let rest = &mut { memory };
-        let d = Derivatives::take(&dims, rest).map_err(short)?;
+        let mut d = Derivatives::take(&dims, rest).map_err(short)?;
         let mut s = TangentScratch::take(&dims.longest, rest).map_err(short)?;
         let m = MotionScratch::take(&Self::motion_dims(&model), rest).map_err(short)?;
         let bound = self.evaluated()?.bound() * R::TWO;
+        self.differentiate_circulation(&mut d)?;
         let (evaluation, impulse) = (&mut self.evaluation, self.progress.impulse);
         Linearizer { evaluation, model, impulse, d, m }.fill(&mut s, parameters, a, b);
         Ok(Linearization { bound })

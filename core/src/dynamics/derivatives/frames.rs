@@ -9,7 +9,7 @@
 //!
 //! Tested by `tests/derivatives`.
 
-use crate::base::memory::{at, put};
+use crate::base::memory::{add, at, put};
 use crate::base::scalar::Real;
 use crate::dynamics::derivatives::Derivatives;
 
@@ -82,7 +82,7 @@ pub(crate) fn momentum_slopes<R: Real>(qd: &[R], mass: &[R], slope: &[R], p: &[R
     }
 }
 
-/// Fills H and C of the fluid from M^f, M_v, P, Q, Y.
+/// Adds H and C of the fluid, formed from M^f, M_v, P, Q, Y.
 pub(crate) fn complete<R: Real>(qd: &[R], qdd: &[R], d: &mut Derivatives<'_, R>) {
     let n = qd.len();
     let Derivatives { mass, mass_rate, slope, mixed, hessian, position, velocity, .. } = d;
@@ -101,7 +101,7 @@ pub(crate) fn complete<R: Real>(qd: &[R], qdd: &[R], d: &mut Derivatives<'_, R>)
             let left = spin(i) * turned_unit(a, |k| m.get(k, b));
             let right = spin(j) * turned_unit(b, |k| m.get(a, k));
             let r = momentum_slope(&m, &p_ab, qd, momentum, a, b) - momentum_slope(&m, &p_ab, qd, momentum, b, a);
-            put(velocity, b * n + a, mv.get(a, b) - left - right + r);
+            add(velocity, b * n + a, mv.get(a, b) - left - right + r);
             let mut h = q.get(a, b) - y.get(a, b) * R::HALF - spin(i) * turned_unit(a, |k| p_ab.get(k, b));
             // (J_a q̇)·P_b and (J_b q̇)·P_a.
             let along = |angle: usize, column: usize| {
@@ -130,7 +130,7 @@ pub(crate) fn complete<R: Real>(qd: &[R], qdd: &[R], d: &mut Derivatives<'_, R>)
                     h -= at(qd, 3 * i) * m.turned(qd, 3 * i + 1, j) - at(qd, 3 * i + 1) * m.turned(qd, 3 * i, j);
                 }
             }
-            put(position, b * n + a, h);
+            add(position, b * n + a, h);
         }
     }
 }

@@ -12,12 +12,13 @@
 //!
 //! Tested by `tests/derivatives`.
 
+pub(crate) mod circulation;
 pub(crate) mod frames;
 pub(crate) mod motion;
 mod products;
 pub(crate) mod tree;
 
-use crate::base::memory::{add, at, axpy, buffers, copy, inner, part, part_mut, put};
+use crate::base::memory::{at, axpy, buffers, copy, part, part_mut, put};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Result, Status};
 use crate::dynamics::christoffel::without_turning;
@@ -105,13 +106,15 @@ buffers! {
     }
 }
 
+/// Whether the force of circulation is differentiated by differences, which are there already when the rest is added.
+pub(crate) fn by_differences<R: Real>(model: &Model<'_, R>) -> bool {
+    model.head.plan.circulation && model.head.plan.formulation != Formulation::Kirchhoff
+}
+
 /// Refuses what has no derivatives yet, by the name of the term.
 pub(crate) fn supported<R: Real>(model: &Model<'_, R>) -> Result<()> {
     let no = |term| Err(Error::new(Status::Unsupported).of(term, f64::NAN));
     let lone = model.head.plan.formulation == Formulation::Kirchhoff;
-    if model.head.plan.circulation {
-        return no("circulation");
-    }
     if model.head.force != ForceFormula::ExactGradient && !lone {
         return no("force formula");
     }
@@ -131,6 +134,10 @@ impl<R: Real> Evaluation<'_, R> {
         for square in [&mut *d.mass, &mut *d.mass_rate, &mut *d.slope, &mut *d.mixed, &mut *d.hessian] {
             square.fill(R::zero());
         }
+        if !by_differences(model) {
+            d.position.fill(R::zero());
+            d.velocity.fill(R::zero());
+        }
         without_turning(model.links.len(), qdd, self.velocity.qd, d.base);
         if dims.unknowns > 0 {
             self.unit_densities(model, &dims, d);
@@ -146,6 +153,9 @@ impl<R: Real> Evaluation<'_, R> {
         }
         frames::complete(self.velocity.qd, qdd, d);
         let c = &self.placement.configuration(model);
+        if model.head.plan.formulation == Formulation::Kirchhoff && model.head.plan.circulation {
+            circulation::add_lone(c, self.velocity.qd, d.position, d.velocity);
+        }
         if model.head.plan.gravity {
             buoyancy::add_hessian(model, c.poses, d.position);
         }
@@ -234,18 +244,16 @@ impl<R: Real> Evaluation<'_, R> {
         moments(c, dims, density * R::HALF, d.rate, d.slope);
         moments(c, dims, density * R::HALF, d.second, d.mixed);
         let half = density * R::HALF;
-        for b in 0..rows {
-            let (r, second, s_b) =
-                (part(d.transposed, b * ld, n), part(d.second_transposed, b * ld, n), part(d.rate, b * ld, n));
-            for a in 0..rows {
-                let (u, z, r_a) = (part(unit, a * ld, n), part(d.product, a * ld, n), part(d.transposed, a * ld, n));
-                add(d.slope, b * rows + a, half * inner(u, r));
-                add(d.mixed, b * rows + a, half * (inner(u, second) + inner(z, r)));
-                let product = inner(r_a, s_b);
-                add(d.hessian, b * rows + a, product);
-                add(d.hessian, a * rows + b, product);
-            }
-        }
+        let products =
+            |left, right, scale, out: &mut [R]| products::add_inner_products(left, right, ld, n, rows, scale, out);
+        products(unit, d.transposed, half, d.slope);
+        products(unit, d.second_transposed, half, d.mixed);
+        products(d.product, d.transposed, half, d.mixed);
+        // Twice half of it: rᵀ S + Sᵀ r.
+        let hessian = &mut *d.hessian;
+        symmetrize(hessian, rows);
+        products(d.transposed, d.rate, R::TWO, hessian);
+        symmetrize(hessian, rows);
         for y in d.hessian.iter_mut() {
             *y *= density;
         }

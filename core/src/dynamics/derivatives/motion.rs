@@ -12,11 +12,12 @@ use crate::dynamics::articulation::{project, velocities};
 use crate::dynamics::derivatives::tree::{Along, Direction, Tree};
 use crate::dynamics::derivatives::{Derivatives, frames};
 use crate::dynamics::evaluation::Evaluation;
-use crate::dynamics::forces::buoyancy;
+use crate::dynamics::forces::{buoyancy, repulsion};
 use crate::fluid::tangent_pass::TangentScratch;
 use crate::geometry::pose::{Poses, twist_of};
 use crate::linear::ldl;
 use crate::model::{Control, Formulation, Model};
+use crate::scene::Repulsion;
 
 /// What the motion may be differentiated by.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -369,7 +370,18 @@ fn add_link_term<R: Real>(
                     add(out, 3 * i + k, (at(residual) - at(e.forces.outer) - mass * at(e.forces.qdd)) / density);
                 }
             }
-            buoyancy::add_slope(model, Poses(e.placement.poses), gravity, [R::zero(), R::one()], out);
+            let poses = Poses(e.placement.poses);
+            buoyancy::add_slope(model, poses, gravity, [R::zero(), R::one()], out);
+            if model.head.plan.circulation {
+                // What is left of the other forces without weight, buoyancy and repulsion.
+                let inverse = R::one() / density;
+                axpy(out, inverse, e.forces.outer);
+                buoyancy::add_slope(model, poses, -gravity * inverse, [R::one(), density], out);
+                if let Some(law) = model.head.repulsion {
+                    let law = Repulsion { epsilon: -law.epsilon * inverse, ..law };
+                    repulsion::add_gradient(&e.placement.configuration(model), law, out);
+                }
+            }
         }
         Parameter::Gravity => buoyancy::add_slope(model, Poses(e.placement.poses), R::one(), [R::one(), density], out),
         Parameter::Mass(i) => {

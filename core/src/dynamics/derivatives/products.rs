@@ -4,7 +4,7 @@
 
 use crate::base::complex::{Complex, complex};
 use crate::base::features;
-use crate::base::lanes::{LANES, lanes, put_lanes};
+use crate::base::lanes::{LANES, lanes, put_lanes, sum_of};
 use crate::base::machine::{Machine, Task};
 use crate::base::memory::{add, at, part, part_mut, put};
 use crate::base::once::once;
@@ -146,4 +146,59 @@ fn tile<R: Real, const M: usize>(panel: &[R], ld: usize, from: &[R], row: usize,
             put_lanes(before, out);
         }
     }
+}
+
+once! {
+    /// `out_ab += scale · left_a · right_b` over the first `n` rows of columns with leading dimension `ld`, `count` of each; `out`
+    /// column-major.
+    pub(crate) fn add_inner_products['a](
+        left: &'a [R], right: &'a [R], ld: usize, n: usize, count: usize, scale: R, out: &'a mut [R],
+    ) {
+        Machine::here().run(Inner { left, right, ld, n, count, scale, out });
+    }
+}
+
+struct Inner<'b, R> {
+    left: &'b [R],
+    right: &'b [R],
+    ld: usize,
+    n: usize,
+    count: usize,
+    scale: R,
+    out: &'b mut [R],
+}
+
+impl<R: Real> Task for Inner<'_, R> {
+    type Output = ();
+    #[inline(always)]
+    fn run(self) {
+        let Inner { left, right, ld, n, count, scale, out } = self;
+        for b in 0..count {
+            let r = part(right, b * ld, n);
+            // A link has three unit motions: their products share what they read.
+            for a in (0..count).step_by(3) {
+                let columns = [0, 1, 2].map(|k| part(left, (a + k) * ld, n));
+                for (k, sum) in three_products(columns, r).into_iter().enumerate() {
+                    add(out, b * count + a + k, scale * sum);
+                }
+            }
+        }
+    }
+}
+
+/// Three scalar products with one vector.
+#[inline(always)]
+fn three_products<R: Real>(columns: [&[R]; 3], r: &[R]) -> [R; 3] {
+    let mut sums = [[R::zero(); LANES]; 3];
+    let [x, y, z] = columns.map(|column| column.chunks(LANES));
+    for (r, (x, (y, z))) in r.chunks(LANES).zip(x.zip(y.zip(z))) {
+        let r = lanes(r, R::zero());
+        for (sum, column) in sums.iter_mut().zip([x, y, z]) {
+            let column = lanes(column, R::zero());
+            for ((s, c), r) in sum.iter_mut().zip(column).zip(r) {
+                *s += c * r;
+            }
+        }
+    }
+    sums.map(sum_of)
 }
