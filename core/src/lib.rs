@@ -58,6 +58,7 @@
 //!    | repulsion | [`Sim::repulsion`] | (5.1) |
 //!    | circulation: energy gradient, lift | [`Sim::circulation_gradient`], [`Sim::gyroscopic`] | section 3 |
 //!    | torques and powers of the joints | [`Sim::joint_torques`] | (7.2) |
+//!    | how rates depend on state and parameters, forces on positions and velocities | [`Sim::linearize`], [`Sim::force_derivatives`] | docs/derivatives.md |
 //! 5. **Trust.** Of space: [`Sim::indicators`] of the steps and [`Sim::resolution`] of the state shown, each a [`Resolution`]. Of
 //!    time: [`Sim::time_error`]. What exceeds the scene's tolerance: [`Sim::notice`].
 //!
@@ -77,9 +78,10 @@
 //!
 //! # Features
 //!
-//! * `std` (default): `alloc`, `implicit`, `near`, and instructions of the processor chosen while running.
+//! * `std` (default): `alloc`, `implicit`, `near`, `derivatives`, and instructions of the processor chosen while running.
 //! * `alloc`: [`ModelBuf`] and [`SimBuf`].
 //! * `implicit`: [`Method::Gauss6`]. `near`: graded quadrature, [`Quadrature::Graded`](scene::Quadrature::Graded). Without them a program for a microcontroller is smaller.
+//! * `derivatives`: [`Sim::linearize`] and [`Sim::force_derivatives`], in memory of their own.
 //! * `fft`: rustfft for the set-up of large outlines.
 //!
 #![cfg_attr(

@@ -5,6 +5,7 @@ mod cells;
 mod drawing;
 #[cfg(test)]
 mod drawing_test;
+mod line;
 pub mod naca;
 mod noise;
 #[cfg(test)]
@@ -22,9 +23,10 @@ use std::path::Path;
 use super::file;
 use super::reader::{Item, Outcome, Problem};
 use cells::{Row, Sheet, short};
+pub use line::turn;
 pub use noise::noise;
 use points::MOST;
-pub use points::{Outline, turn};
+pub use points::Outline;
 
 /// Both surfaces of a section begin, and end, at most this part of its chord apart.
 const OPEN: f64 = 0.1;

@@ -7,8 +7,9 @@ use kurbo::{Affine, PathSeg};
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::cells::short;
+use super::line::{turn, twice_area};
 use super::path::{self, Line};
-use super::points::{CUSP, Outline, turn, twice_area};
+use super::points::{CUSP, Outline};
 use crate::scene_file::reader::{Outcome, Problem, suggest};
 
 /// Elements of a picture, at most.

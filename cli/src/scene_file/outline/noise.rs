@@ -4,7 +4,7 @@
 //! that scatter independently it does not. With weights whose squares sum to 1 its part across the curve has the points' own standard
 //! deviation. Low orders fit straight sides between corners, high ones few points on a round outline; those that agree are believed.
 
-use super::points::extent;
+use super::line::extent;
 
 /// Orders of differences.
 const ORDERS: [usize; 7] = [2, 3, 4, 6, 8, 10, 12];

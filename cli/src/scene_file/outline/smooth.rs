@@ -6,8 +6,9 @@
 //! divided differences, the trigonometric ones for κ > 0; least squares by rotations, since normal equations would lose the digits
 //! of long waves. O(points).
 
+use super::line::{distinct, extent, turn, twice_area};
 use super::noise::{Noise, noise};
-use super::points::{Outline, distinct, extent, six, turn, twice_area};
+use super::points::{Outline, six};
 
 /// Fewer points are a shape, not a fit.
 const LEAST: usize = 8;

@@ -1,7 +1,8 @@
 //! Fits lie within their distance, are as smooth as that allows, and leave alone what they should.
 
+use super::line::twice_area;
 use super::noise_test::{Random, ellipse, even};
-use super::points::{Outline, twice_area};
+use super::points::Outline;
 use super::smooth::{moved, smooth, stands_out};
 
 /// How far points are from an ellipse with a longer axis of 1, at most and on average: to first order.

@@ -41,6 +41,7 @@ pub(crate) struct Preimage<R> {
     /// dx/dz.
     pub rate: Complex<R>,
     /// The root of the curve is t_j + u with this u; NaN where it was read from memory, which does not keep it.
+    #[cfg_attr(not(feature = "derivatives"), allow(dead_code))]
     pub offset: Complex<R>,
 }
 

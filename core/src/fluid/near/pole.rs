@@ -253,6 +253,7 @@ pub(crate) fn sums<R: Real>(pre: &Preimage<R>, table: &[R], [wx, wy]: [&[R]; 2])
 }
 
 /// Visits every node k with the terms of D_ik = dW_ik/dz and of E_ik = dD_ik/dz for one target; `bend`: d²x/dz².
+#[cfg(feature = "derivatives")]
 pub(crate) fn each_slope<R: Real>(
     pre: &Preimage<R>,
     table: &[R],

@@ -232,6 +232,7 @@ impl<R: Real> OutlineView<'_, R> {
     }
 
     /// d²s/dz² of the nodes' parameter as a function of the point z = γ(t + u), u complex: (s″ − s′ γ″/γ′)/γ′².
+    #[cfg(feature = "derivatives")]
     pub(crate) fn second_rate(&self, t: R, u: Complex<R>) -> Complex<R> {
         let [_, first, second] = self.curve.jet(u + t);
         let [slope, bend] = self.grading.slopes(t, u);

@@ -10,6 +10,7 @@
 //!
 //! Tested by the tests at its end, `geometry/curve/tests.rs`.
 
+#[cfg(feature = "derivatives")]
 use crate::base::complex::{Complex, complex, csin_cos};
 use crate::base::memory::{at, part, put};
 use crate::base::scalar::Real;
@@ -182,6 +183,7 @@ impl<'a, R: Real> Grading<'a, R> {
     }
 
     /// s′ and s″ at the complex parameter t + u.
+    #[cfg(feature = "derivatives")]
     pub(crate) fn slopes(&self, t: R, u: Complex<R>) -> [Complex<R>; 2] {
         let mut sum = [complex(self.plain, R::zero()), Complex::default()];
         for [place, _, weight, _, sh, half_sinh, _] in self.each() {
@@ -252,7 +254,7 @@ impl<'a, R: Real> Grading<'a, R> {
 mod tests {
     extern crate std;
     use super::*;
-    use crate::base::complex::{cabs, cis};
+    use crate::base::complex::{Complex, cabs, cis, complex, csin_cos};
     use std::vec;
     use std::vec::Vec;
 
