@@ -80,7 +80,7 @@ impl<'a, R: Real> Model<'a, R> {
         let store = &mut *memory.reals;
         let (store, scratch) = store.split_at_mut_checked(layout.scratch_at).ok_or(Status::MemoryTooSmall)?;
         build_boundaries(scene, &traits, memory.boundaries, store, scratch)?;
-        build_links(scene, memory.links, memory.boundaries, store)?;
+        build_links(scene, memory.links, memory.boundaries)?;
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);
