@@ -6,4 +6,5 @@ pub mod lapack;
 pub mod passing;
 pub mod rows;
 pub mod scenes;
+pub mod setups;
 pub mod timing;
