@@ -28,7 +28,14 @@ impl<S: Description<f64>> Description<f64> for Dry<'_, S> {
         self.0.link_count(b)
     }
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, f64>> {
-        let mass = Mass::Given { mass: 1.0, inertia: 1.0, centre_of_mass: [0.0; 2] };
-        self.0.link(b, l).map(|link| Link { mass, ..link })
+        self.0.link(b, l).map(weightless)
     }
+    fn link_as_given(&self, b: usize, l: usize) -> Option<Link<'_, f64>> {
+        self.0.link_as_given(b, l).map(weightless)
+    }
+}
+
+/// The same of unit mass, which needs no fluid.
+fn weightless(link: Link<'_, f64>) -> Link<'_, f64> {
+    Link { mass: Mass::Given { mass: 1.0, inertia: 1.0, centre_of_mass: [0.0; 2] }, ..link }
 }

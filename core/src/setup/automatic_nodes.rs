@@ -181,4 +181,7 @@ impl<R: Real, S: Description<R>> Description<R> for Resolved<'_, S> {
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
         self.scene.link(b, l).map(|link| Link { nodes: self.nodes(link.nodes, &link.shape), ..link })
     }
+    fn link_as_given(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
+        self.scene.link_as_given(b, l)
+    }
 }
