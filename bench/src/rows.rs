@@ -2,8 +2,8 @@
 
 use crate::lapack::Lapack;
 use crate::passing;
-use crate::setups::{Kind, set_up};
 use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
+use crate::setups::{Kind, set_up};
 use crate::timing::{Measured, Turns};
 use nekton::Method;
 use nekton::scene::{Body, Harmonic, Quadrature, Root, Scene, Signal};
