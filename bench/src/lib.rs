@@ -7,4 +7,5 @@ mod linearize;
 pub mod passing;
 pub mod rows;
 pub mod scenes;
+pub mod setups;
 pub mod timing;

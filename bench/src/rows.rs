@@ -4,6 +4,7 @@ use crate::lapack::Lapack;
 use crate::linearize;
 use crate::passing;
 use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
+use crate::setups::{Kind, set_up};
 use crate::timing::{Measured, Turns};
 use nekton::Method;
 use nekton::scene::{Body, Harmonic, Quadrature, Root, Scene, Signal};
@@ -328,5 +329,18 @@ pub fn rows() -> Vec<Row> {
         Held::No,
         Box::new(|_| passing::against_octave()),
     );
+    for (name, kind, points, wanted) in [
+        ("set-up of a section / dgetrf(nodes)", Kind::Section, 161, 1.0),
+        ("set-up of a section / dgetrf(nodes)", Kind::Section, 401, 1.0),
+        ("set-up of a smooth outline / dgetrf(nodes)", Kind::Blob, 5000, 3.0),
+        ("set-up of a polygon / dgetrf(nodes)", Kind::Polygon, 50, 2.0),
+        ("set-up of a gear / dgetrf(nodes)", Kind::Gear, 150, 2.0),
+        ("set-up of a gear / dgetrf(nodes)", Kind::Gear, 500, 2.0),
+        ("set-up of a star / dgetrf(nodes)", Kind::Star, 150, 2.0),
+        ("set-up of a star / dgetrf(nodes)", Kind::Star, 500, 2.0),
+    ] {
+        let run = move |lapack: &Lapack| set_up(lapack, kind, points, wanted);
+        row(name, points, (f64::INFINITY, f64::INFINITY), Held::No, Box::new(run));
+    }
     all
 }

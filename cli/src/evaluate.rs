@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use crate::ending::{Ending, say};
 use crate::scene_file::{Integrator, Problem};
 use crate::setup::Setup;
+use crate::waiting::Waiting;
 use nekton::Sim;
 
 /// Prints everything, as a table or as one JSON object.
@@ -16,6 +17,7 @@ pub fn evaluate(path: &Path, as_json: bool) -> Result<Ending, Problem> {
     let setup = Setup::open(path)?;
     // The method does not matter: no step is made.
     let mut sim = setup.simulate(Integrator::Rk4 { step: 1.0 })?;
+    let _told = Waiting::new("evaluating the start");
     let values = Values::new(&setup, &mut sim.view()).map_err(|e| setup.problem(&e))?;
     say(&if as_json { values.json(&setup).to_string() } else { values.table(&setup) });
     Ok(Ending::Complete)

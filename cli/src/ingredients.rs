@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nekton::scene::{Body, CirculationModel, Drive, Link, Scene, Wall};
-use nekton::{ModelBuf, Plan, Status};
+use nekton::{Model, Plan, Status};
 
 use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
@@ -96,7 +96,7 @@ fn plan_without(scene: &Scene<'_, f64>, ingredient: &Ingredient) -> Result<Optio
 }
 
 fn plan_of(scene: &Scene<'_, f64>) -> Result<Plan, nekton::Error> {
-    Ok(*ModelBuf::new(scene)?.view().plan())
+    Model::planned(scene)
 }
 
 fn difference(with: usize, without: usize) -> i128 {

@@ -15,6 +15,7 @@ mod scene_file;
 mod setup;
 mod signals;
 mod trade;
+mod waiting;
 mod watch;
 
 use std::ffi::OsString;

@@ -3,29 +3,30 @@
 use std::path::Path;
 
 use crate::ending::{Ending, say};
-use crate::scene_file::{Integrator, Problem};
+use crate::scene_file::Problem;
 use crate::setup::Setup;
-
-/// Nodes up to which the bound of the error at the start is looked at: a fraction of a second.
-const MOST: usize = 2048;
+use crate::waiting::Waiting;
 
 /// Prints the plan.
 pub fn plan(path: &Path) -> Result<Ending, Problem> {
-    let setup = Setup::open(path)?;
-    say(&setup.model.view().plan().to_string());
-    say(&format!("nodes                    {}", setup.nodes().join(", ")));
+    let _told = Waiting::new("reading outlines");
+    let (setup, plan) = Setup::sketch(path)?;
+    say(&plan.to_string());
+    let chosen = setup.scene.chosen_nodes();
+    let about = |place| if chosen.contains(&place) { "about " } else { "" };
+    say(&format!("nodes                    {}", setup.counts(about).join(", ")));
+    if !chosen.is_empty() {
+        say(
+            "                         about: by the rule; a run looks at its start, and takes up to four times as many where it needs them",
+        );
+    }
+    if plan.fluid || plan.repulsion {
+        say("error in space           told by `nekton evaluate`, which makes the matrices");
+    }
     for (whose, what) in setup.outlines() {
         say(&format!("outline of {whose}: {what}"));
     }
-    let mut notices = setup.notices();
-    // What keeps a simulation from starting is told when one is run.
-    if setup.model.view().plan().unknowns <= MOST
-        && let Ok(mut sim) = setup.simulate(Integrator::Rk4 { step: 1.0 })
-        && let Ok(resolution) = sim.view().resolution()
-    {
-        notices.extend(setup.unresolved(resolution.bound()));
-    }
-    for notice in notices {
+    for notice in setup.notices() {
         say(&format!("notice: {notice}"));
     }
     Ok(Ending::Complete)

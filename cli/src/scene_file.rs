@@ -235,6 +235,19 @@ impl SceneFile {
 
     /// What there is to say of a curve whose points tell it no better than to this error.
     pub fn uncertain(&self, place: Place, error: f64) -> String {
+        if let Some(far) = self.shape(place).and_then(ShapeDef::far) {
+            return format!(
+                "its points tell its outline no better than to about {} of added mass, which no bound contains: {far}",
+                percent(error)
+            );
+        }
+        if let Some((a, b)) = self.shape(place).and_then(ShapeDef::twins) {
+            return format!(
+                "its points tell its outline no better than to about {} of added mass, which no bound contains: its points {a} and {b} (counted \
+                 from 0) are so close that the line through them bends the curve; leave one of them out",
+                percent(error)
+            );
+        }
         let sharp = self.shape(place).and_then(ShapeDef::sharp).map_or_else(String::new, |(points, turn)| {
             format!(
                 "; it turns by up to {turn:.0}° at its points {} (counted from 0), which are no corners",
@@ -340,19 +353,22 @@ impl SceneFile {
                 other.map(|l| format!("move them apart; the other is placed on line {l}"))
             }
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
-            Status::SelfIntersection => Some(
+            Status::SelfIntersection => Some(self.shape(error.place).and_then(ShapeDef::far).unwrap_or_else(|| {
                 "list the points in order along the outline; a curve through uneven points may cross itself where the polygon does not, as \
                  beside a long side without points: give it some, name its ends in `corners`, or write `polygon`"
-                    .to_owned(),
-            ),
+                    .to_owned()
+            })),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
             Status::BoundExceeded | Status::Singular => Some(self.more_nodes(error.place)),
             Status::OutOfMemory => Some(self.largest()),
             Status::BadTolerance => Some("1e-12 is near the least that can be met".to_owned()),
             Status::Massless => Some("give it a density, or give the fluid one".to_owned()),
-            Status::BadShape if error.what == "point" || error.what == "vertex" => {
-                Some("leave one of the two out (points count from 0)".to_owned())
-            }
+            Status::BadShape if error.what == "corner" => Some("name every corner once".to_owned()),
+            Status::BadShape if error.what == "point" || error.what == "vertex" => Some(
+                self.shape(error.place)
+                    .and_then(ShapeDef::far)
+                    .unwrap_or_else(|| "leave one of the two out (points count from 0)".to_owned()),
+            ),
             Status::BadShape => Some("look at the lengths, the points and the corner radius".to_owned()),
             _ => None,
         };
@@ -375,6 +391,11 @@ impl SceneFile {
     /// Whether some boundary's nodes are given.
     pub fn gives_nodes(&self) -> bool {
         self.given_nodes().any(|(_, nodes)| nodes > 0)
+    }
+
+    /// Whose nodes are automatic.
+    pub fn chosen_nodes(&self) -> Vec<Place> {
+        self.given_nodes().filter(|(_, nodes)| *nodes == 0).map(|(place, _)| place).collect()
     }
 
     /// Which boundary has most nodes, of those that the scene gives.

@@ -1,5 +1,7 @@
 //! From a scene file to a model and a simulation of the core, with the orders of links and joints between them.
 
+mod sketch;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,7 +9,9 @@ use nekton::status::{Error, Place, Status};
 
 use crate::scene_file::{Integrator, Problem, SceneFile, percent};
 use crate::trade::{Choice, Variant, counts, method, unit};
-use nekton::{Model, ModelBuf, Sim, SimBuf};
+use crate::waiting::Waiting;
+use nekton::{Model, ModelBuf, Plan, Resolved, Sim, SimBuf};
+use sketch::Dry;
 
 /// A scene with its model.
 pub struct Setup {
@@ -43,11 +47,28 @@ impl Setup {
         Self::of(SceneFile::open(path)?)
     }
 
+    /// Reads a scene, and compiles what takes no matrices: a model without fluid, for its outlines and nodes, those of the rule where they
+    /// are automatic; with it the plan of the scene's own.
+    pub fn sketch(path: &Path) -> Result<(Self, Plan), Problem> {
+        let scene = SceneFile::open(path)?;
+        let made = scene.with_core(|core| {
+            let ruled = Resolved::by_rule(core);
+            Ok((Model::planned(&ruled)?, ModelBuf::new(&Dry(&ruled))?))
+        });
+        let (plan, model) = made.map_err(|e| scene.problem(&e))?;
+        Ok((Self::with(scene, model), plan))
+    }
+
     /// Compiles a scene.
     pub fn of(scene: SceneFile) -> Result<Self, Problem> {
+        let _told = Waiting::new("setting up");
         let need = scene.with_core(|core| Model::requirement(core)).map_err(|e| scene.problem(&e))?;
         afford(&scene, need.reals)?;
         let model = scene.with_core(|core| ModelBuf::new(core)).map_err(|e| scene.problem(&e))?;
+        Ok(Self::with(scene, model))
+    }
+
+    fn with(scene: SceneFile, model: ModelBuf<f64>) -> Self {
         let view = model.view();
         let links = scene.core_order();
         let places: Vec<Option<Place>> = (0..view.link_count()).map(|i| view.link(i).map(|l| l.place)).collect();
@@ -59,11 +80,12 @@ impl Setup {
             })
             .collect();
         joints.sort_by_key(|(_, user)| *user);
-        Ok(Setup { model: Arc::new(model), links, joints, scene })
+        Setup { model: Arc::new(model), links, joints, scene }
     }
 
     /// Compiles the scene anew with another setting.
     pub fn remake(&mut self, choice: &Choice) -> Result<(), Problem> {
+        let _told = Waiting::new("setting up");
         let Choice { setting, scale, .. } = choice;
         let counts = counts(&self.model.view());
         let (force, quadrature) = (setting.force, setting.quadrature);
@@ -76,6 +98,7 @@ impl Setup {
 
     /// Starts a simulation.
     pub fn simulate(&self, integrator: Integrator) -> Result<SimBuf<f64>, Problem> {
+        let _told = Waiting::new("evaluating the start");
         afford(&self.scene, Sim::requirement(&self.model.view()).map_err(|e| self.problem(&e))?.reals)?;
         SimBuf::new(self.model.clone(), method(integrator, unit(&self.model.view()))).map_err(|e| self.problem(&e))
     }
@@ -87,13 +110,21 @@ impl Setup {
 
     /// Every boundary with its nodes.
     pub fn nodes(&self) -> Vec<String> {
+        self.counts(|_| "")
+    }
+
+    /// The same, with a word before each of them.
+    pub fn counts(&self, word: impl Fn(Place) -> &'static str) -> Vec<String> {
         let view = self.model.view();
         let labels = self.scene.labels();
         let links = self.links.iter().zip(labels).filter_map(|(core, label)| Some((label, view.link(*core)?.place)));
         let obstacles = (0..self.scene.obstacles.len()).map(Place::Obstacle);
         let walls = self.scene.tank.iter().map(|_| Place::Tank).chain(obstacles);
         let walls = walls.map(|place| (self.scene.name_of(place).trim_start_matches("the ").to_owned(), place));
-        links.chain(walls).filter_map(|(name, place)| Some(format!("{name} {}", view.nodes(place)?))).collect()
+        links
+            .chain(walls)
+            .filter_map(|(name, place)| Some(format!("{name} {}{}", word(place), view.nodes(place)?)))
+            .collect()
     }
 
     /// What there is to say of a bound of the error in space.

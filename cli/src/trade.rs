@@ -17,6 +17,7 @@ use nekton::status::Error;
 
 use crate::ending::{Ending, say};
 use crate::scene_file::{Problem, SceneFile};
+use crate::waiting::Waiting;
 use measure::Bench;
 use reference::{Reference, Refusal, second_opinion};
 use setting::shown;
@@ -46,10 +47,13 @@ pub fn trade(path: &Path, wish: &Wish) -> Result<Ending, Problem> {
     scene.with_core(|core| {
         let table = Table::new(&wish.out.clone().unwrap_or_else(|| beside(path)), mark(core, own));
         table.check()?;
+        let bar = progress();
+        bar.set_message("setting up");
+        // Where nobody sees the bar.
+        let _told = bar.is_hidden().then(|| Waiting::new("measuring settings"));
         let bench = Bench::new(core, own).map_err(|e| scene.problem(&e))?;
         let known = table.rows()?;
         let limit = Duration::from_secs_f64(wish.limit);
-        let bar = progress();
         let stored = match wish.until {
             None => table.reference(None)?,
             wanted => table.reference(wanted)?,
@@ -208,6 +212,7 @@ pub struct Choice {
 pub fn choose(path: &Path, scene: &SceneFile, error: f64) -> Result<Choice, Problem> {
     let (duration, own) = (scene.run()?.duration, scene.run()?.integrator);
     let wrong = |e: &Error| scene.problem(e);
+    let _told = Waiting::new("measuring settings");
     scene.with_core(|core| {
         let bench = Bench::new(core, own).map_err(|e| wrong(&e))?;
         let table = Table::new(&beside(path), mark(core, own));

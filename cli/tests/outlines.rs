@@ -315,3 +315,33 @@ fn points_that_leave_an_outline_uncertain_are_noticed_and_those_where_it_turns_b
     let error = json["outline_errors"]["fish.head"].as_f64().unwrap();
     assert!(error > 1e-9 && error < 1e-4, "{error}");
 }
+
+#[test]
+fn a_corner_named_twice_points_too_close_and_drawings_too_far_are_told_as_what_they_are() {
+    let ring = |n: usize, far: f64, twin: Option<f64>| -> String {
+        let point = |t: f64| format!("[{:.17e},{:.17e}],", far + t.cos(), 0.8 * t.sin());
+        let at = |k: usize| std::f64::consts::TAU * k as f64 / n as f64;
+        let mut points: Vec<String> = (0..n).map(|k| point(at(k))).collect();
+        if let Some(off) = twin {
+            let t = at(5) + 1e-4 * at(1);
+            points.insert(6, format!("[{:.17e},{:.17e}],", (1.0 + off) * t.cos(), 0.8 * (1.0 + off) * t.sin()));
+        }
+        points.concat()
+    };
+    let plan = |shape: String| with(&shape).nekton(&["plan", "scene.toml"]);
+    let done = plan(format!("{{ curve = [{}], corners = [3, 0, 3] }}", ring(24, 0.0, None)));
+    assert!(done.code == Some(2) && done.err.contains("names the corner 3 twice"), "{}", done.err);
+    let done = plan(format!("{{ curve = [{}] }}", ring(24, 0.0, Some(3e-5))));
+    assert!(done.out.contains("its points 5 and 6 (counted from 0) are so close that"), "{}", done.out);
+    // Its points are off by what their coordinates do not hold: more of them would not help.
+    for far in [1e13, 1e15] {
+        let done = plan(format!("{{ curve = [{}] }}", ring(400, far, None)));
+        let told = format!("{}{}", done.out, done.err);
+        assert!(
+            told.contains("draw it nearer to its origin")
+                && !told.contains("give more")
+                && !told.contains("give it some"),
+            "{far:e}: {told}"
+        );
+    }
+}

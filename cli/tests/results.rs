@@ -464,7 +464,7 @@ fn a_bound_above_a_thousandth_is_noticed_everywhere_and_above_one_refused_with_w
         assert_eq!(done.code, Some(0), "{command:?} {}", done.err);
         done.out
     };
-    let commands = [&["plan", "scene.toml"][..], &["evaluate", "scene.toml"], &["evaluate", "--json", "scene.toml"]];
+    let commands = [&["evaluate", "scene.toml"][..], &["evaluate", "--json", "scene.toml"]];
     for (nodes, noticed) in [("nodes = 64", true), ("", false)] {
         let place = Place::new(&bare(nodes, ""));
         for command in commands {
@@ -519,6 +519,23 @@ fn memory_that_no_machine_has_is_refused_before_it_is_taken_with_the_largest_bou
 }
 
 #[test]
+fn a_plan_of_thousands_of_nodes_takes_no_matrices() {
+    let body = |k: usize| {
+        format!(
+            "[[body]]\nname = \"b{k}\"\nposition = [{}.0, 0.0]\n[[body.link]]\nname = \"l\"\nshape = {{ ellipse = [0.4, 0.1] }}\n\
+             density = 1.0\nnodes = 1024\n",
+            2 * k
+        )
+    };
+    let scene = format!("[fluid]\ndensity = 1.0\n{}", (0..400).map(body).collect::<String>());
+    let done = Place::new(&scene).nekton(&["plan", "scene.toml"]);
+    assert_eq!(done.code, Some(0), "{}", done.err);
+    // A matrix of 1.3 terabytes.
+    assert!(done.out.contains("boundary unknowns        409600 "), "{}", done.out);
+    assert!(done.out.contains("told by `nekton evaluate`"), "{}", done.out);
+}
+
+#[test]
 fn automatic_nodes_are_shown_by_the_plan() {
     let place = Place::new(&changed("nodes = 32", "nodes = \"auto\""));
     let plan = place.nekton(&["plan", "scene.toml"]);
@@ -530,7 +547,8 @@ fn automatic_nodes_are_shown_by_the_plan() {
     assert_eq!(counts.len(), 3, "{nodes}");
     assert!(nodes.contains("fish.head") && counts[0].is_multiple_of(2) && counts[0] > 16, "{nodes}");
     let explicit = Place::new(&changed("", "")).nekton(&["plan", "scene.toml"]).out;
-    assert!(explicit.contains("fish.head 32"), "{explicit}");
+    assert!(explicit.contains("fish.head 32") && !explicit.contains("about"), "{explicit}");
+    assert!(nodes.contains("fish.head about ") && plan.out.contains("about: by the rule"), "{}", plan.out);
     let without = Place::new(&changed("nodes = 32\n", "")).nekton(&["plan", "scene.toml"]).out;
     assert_eq!(without, plan.out);
 }

@@ -57,6 +57,10 @@ pub trait Description<R: Real> {
     fn link_count(&self, b: usize) -> usize;
     /// Link `l` of body `b`; `None` from the count on.
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>>;
+    /// The same as it is compared with others: nodes that [`Description::link`] works out from what is given may be left as they are given.
+    fn link_as_given(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
+        self.link(b, l)
+    }
 }
 
 impl<R: Real> Description<R> for Scene<'_, R> {
@@ -384,6 +388,13 @@ pub(crate) fn each_link<'a, R: Real, S: Description<R>>(
 ) -> impl Iterator<Item = (usize, usize, Link<'a, R>)> + Clone {
     (0..scene.body_count())
         .flat_map(move |b| (0..scene.link_count(b)).filter_map(move |l| Some((b, l, scene.link(b, l)?))))
+}
+
+/// Every link as it is given.
+pub(crate) fn each_link_as_given<'a, R: Real, S: Description<R>>(
+    scene: &'a S,
+) -> impl Iterator<Item = Link<'a, R>> + Clone {
+    (0..scene.body_count()).flat_map(move |b| (0..scene.link_count(b)).filter_map(move |l| scene.link_as_given(b, l)))
 }
 
 /// The signal of every coordinate, in their order.

@@ -213,6 +213,56 @@ fn points_that_leave_the_outline_uncertain_are_noticed_and_those_that_tell_it_ar
 }
 
 #[test]
+fn a_pair_of_close_points_that_bends_the_curve_is_noticed_and_one_on_the_curve_is_not() {
+    // A point more at a part of a step from another, and as many times that part off the curve.
+    let with = |n: usize, b: f64, gap: f64, off: f64| {
+        let mut points = ring(1.0, b, (0..n).map(|k| k as f64 / n as f64));
+        let k = n / 5;
+        let t = TAU * (k as f64 + gap) / n as f64;
+        let (x, y) = (t.cos(), b * t.sin());
+        let step = (x - points[k][0]).hypot(y - points[k][1]);
+        let normal = [b * t.cos(), t.sin()].map(|c| c / (b * t.cos()).hypot(t.sin()));
+        points.insert(k + 1, [x + off * step * normal[0], y + off * step * normal[1]]);
+        points
+    };
+    for b in [1.0, 0.6] {
+        let exact = [PI * b * b, PI, PI * b];
+        for n in [24, 40] {
+            for gap in [1e-2, 1e-4, 1e-6] {
+                let (estimate, error) = estimated(&with(n, b, gap, 1.0), Corners::None, exact);
+                println!("{b} {n} {gap:e}: estimate {estimate:.1e}, error {error:.1e}");
+                assert!(
+                    error > 3e-4 && estimate > 1e-3f64.max(error) && estimate < 50.0 * error,
+                    "{estimate:e} {error:e}"
+                );
+                // Closer ones bend it by what is rounded of them.
+                if gap >= 1e-4 {
+                    let (estimate, error) = estimated(&with(n, b, gap, 0.0), Corners::None, exact);
+                    assert!(error < 1e-3 && estimate < 1e-3, "on it: {estimate:e} {error:e}");
+                }
+            }
+        }
+    }
+    let points = with(24, 1.0, 1e-4, 1.0);
+    let links = [link(Shape::curve(&points), 1.0, 64)];
+    let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+    let model = ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap();
+    assert!(model.view().notices().any(|(_, status)| status == Status::OutlineUncertain));
+}
+
+#[test]
+fn a_corner_that_is_named_twice_is_refused_by_its_number() {
+    let (points, _) = plate(1.0, [4; 4]);
+    for corners in [&[0, 4, 4][..], &[4, 0, 8, 4]] {
+        let shape = Shape::Curve { points: &points, corners: Corners::At(corners) };
+        let links = [link(shape, 1.0, 64)];
+        let bodies = [body(&links, [0.0; 3], [0.0; 3])];
+        let error = ModelBuf::new(&Scene { bodies: &bodies, ..Scene::new(1.0, 0.0) }).unwrap_err();
+        assert_eq!((error.status, error.what, error.value), (Status::BadShape, "corner", 4.0));
+    }
+}
+
+#[test]
 fn the_estimate_falls_with_noise_and_does_not_hang_on_place_size_or_direction() {
     let mut state = 3_u64;
     let mut noise = || {

@@ -77,6 +77,8 @@ pub struct Source {
     /// As the user gave it.
     pub path: PathBuf,
     text: String,
+    /// Where its lines end.
+    ends: Vec<usize>,
 }
 
 impl Source {
@@ -91,11 +93,12 @@ impl Source {
             let line = 1 + e.as_bytes().iter().take(good).filter(|b| **b == b'\n').count();
             Problem::line(path, line, "this is not UTF-8 text")
         })?;
-        Ok(Source { path: path.to_owned(), text })
+        let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i).collect();
+        Ok(Source { path: path.to_owned(), text, ends })
     }
     /// Nothing yet.
     pub fn empty() -> Self {
-        Source { path: PathBuf::new(), text: String::new() }
+        Source { path: PathBuf::new(), text: String::new(), ends: Vec::new() }
     }
     /// The text.
     pub fn text(&self) -> &str {
@@ -103,7 +106,7 @@ impl Source {
     }
     /// Line of a byte range's start, counted from 1.
     pub fn line_of(&self, span: Range<usize>) -> usize {
-        1 + self.text.bytes().take(span.start).filter(|b| *b == b'\n').count()
+        1 + self.ends.partition_point(|end| *end < span.start)
     }
     /// A complaint about a line.
     pub fn problem(&self, line: usize, message: impl Into<String>) -> Problem {

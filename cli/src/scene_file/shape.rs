@@ -8,6 +8,10 @@ use super::reader::{Item, Outcome, Section};
 
 /// A turn in degrees of a point of a smooth curve that is named.
 const SHARP: f64 = 60.0;
+/// Two points so many times closer than those beside them are named.
+const TWINS: f64 = 50.0;
+/// Points whose distances have fewer steps of the last digit than this one are too far from their origin.
+const DIGITS: f64 = 1e3;
 
 /// A shape with its own points.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +51,12 @@ impl CornersDef {
         };
         let mut all = item.list()?.iter().map(one).collect::<Outcome<Vec<_>>>()?;
         all.sort_unstable();
-        Ok(CornersDef::At(all))
+        match all.windows(2).find(|w| w[0] == w[1]) {
+            Some(twice) => {
+                Err(item.problem(format!("names the corner {} twice", twice[0])).hint("name every corner once"))
+            }
+            None => Ok(CornersDef::At(all)),
+        }
     }
 }
 
@@ -201,6 +210,37 @@ impl ShapeDef {
         let sharp: Vec<_> = turns.filter(|(_, turn)| *turn >= SHARP).collect();
         let most = sharp.iter().fold(0.0, |most: f64, (_, turn)| most.max(*turn));
         (!sharp.is_empty()).then(|| (sharp.into_iter().map(|(k, _)| k).collect(), most))
+    }
+
+    /// The first two neighbours among the points of a curve that are closer by far than to the points beside them.
+    pub fn twins(&self) -> Option<(usize, usize)> {
+        let ShapeDef::Curve(outline, _) = self else { return None };
+        let (points, n) = (&outline.points, outline.points.len());
+        let side = |k: usize| {
+            let ([x, y], [u, v]) = (points[k % n], points[(k + 1) % n]);
+            (u - x).hypot(v - y)
+        };
+        let twins = |k: &usize| side(*k) > 0.0 && TWINS * side(*k) < side(k + n - 1).min(side(k + 1));
+        (0..n).find(twins).map(|k| (k, (k + 1) % n))
+    }
+
+    /// What to say of points so far from the origin of their drawing that their last digits are as large as a part of their distances.
+    pub fn far(&self) -> Option<String> {
+        let points = match self {
+            ShapeDef::Curve(outline, _) => &outline.points,
+            ShapeDef::Polygon(vertices, _) => vertices,
+            _ => return None,
+        };
+        let first = points.first()?;
+        let size = points.iter().fold(0.0, |s: f64, p| s.max((p[0] - first[0]).hypot(p[1] - first[1])));
+        let digit = f64::EPSILON * first[0].abs().max(first[1].abs());
+        let coarse = digit * DIGITS * points.len() as f64 > size;
+        coarse.then(|| {
+            format!(
+                "they lie so far from the origin of their drawing that their coordinates are multiples of {digit:.0e}: draw it nearer to its \
+                 origin"
+            )
+        })
     }
 
     /// What the user is told of points that the scene file does not show, and of points that scatter.

@@ -5,7 +5,7 @@
 //! `tests/reference_values`.
 
 use crate::base::complex::{Complex, cis, complex, dot, perp};
-use crate::base::memory::{add, at, copy, part_mut, put, take, take_as};
+use crate::base::memory::{add, at, axpy, copy, part_mut, put, take, take_as};
 use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
@@ -89,14 +89,16 @@ pub(crate) fn inverse_mass<R: Real>(added: &[R; 9], density: R, link: &LinkRecor
     inverse
 }
 
-/// Reals of scratch for `n` nodes.
-pub(crate) fn scratch_len(n: usize) -> Result<usize> {
-    n.checked_mul(n).and_then(|b| b.checked_add(4 * n)).ok_or(Status::SizeOverflow.into())
+/// Reals of scratch for `n` nodes; twice the matrix where the potential of rotation inside is not known.
+pub(crate) fn scratch_len(n: usize, inside: bool) -> Result<usize> {
+    let matrices = n.checked_mul(n).and_then(|b| b.checked_mul(if inside { 1 } else { 2 }));
+    matrices.and_then(|b| b.checked_add(4 * n)).ok_or(Status::SizeOverflow.into())
 }
 
 /// Added mass (3 × 3, column-major, symmetrized) and circulation impulse, both per unit density and in the body's frame;
 /// and two error indicators: asymmetry of the mass before, relative to its largest entry (rotation: over the body's reach),
-/// and error of the constant density.
+/// and error of the constant density. Where χ₃ is not known, ψ₃ is found from its stream function −|X|²/2:
+/// (I + Im W/π) ψ₃ = Re W/π |X|²/2.
 pub(crate) fn constants<R: Real>(
     body: &BoundaryRecord<R>,
     store: &[R],
@@ -106,19 +108,24 @@ pub(crate) fn constants<R: Real>(
     let n = body.nodes;
     let nodes = body.nodes(store);
     let h = nodes.step;
+    let inside = body.knows_rotation(store);
     let mut rest = scratch;
     let system = take(&mut rest, n * n + 3 * n)?;
     let pivots = take_as(&mut rest, n)?;
+    let regular = take(&mut rest, if inside { 0 } else { n * n })?;
     let (block, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;
     let source = Source::of(body, store);
-    let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut [], ld: n, at: 0 });
+    let (mut a, mut g) = (Block { data: &mut *block, ld: n, at: 0 }, Block { data: &mut *regular, ld: n, at: 0 });
     fill_self_block(&source.nodes, body.sign, R::zero(), &mut a, &mut g);
     add_flank_terms(&source, body.sign, &mut a, &mut g);
-    let potential = |k: usize| [at(nodes.x, k), at(nodes.y, k), at(nodes.chi, k)];
+    let potential = |k: usize| [at(nodes.x, k), at(nodes.y, k), if inside { at(nodes.chi, k) } else { R::zero() }];
     for k in 0..n {
         for (c, x) in potential(k).into_iter().enumerate() {
             put(columns, c * n + k, -R::TWO * x);
         }
+    }
+    for (column, x) in regular.chunks_exact(n.max(1)).zip(nodes.points()) {
+        axpy(part_mut(columns, 2 * n, n), -dot(x, x) * R::HALF, column);
     }
     factor(system, n, n, pivots)?;
     let (lu, columns) = system.split_at_mut_checked(n * n).ok_or(Status::Internal)?;

@@ -7,7 +7,7 @@ use crate::base::features;
 use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::base::status::{Place, Status};
-use crate::geometry::curve::{Curve, Outline, OutlineView};
+use crate::geometry::curve::{AreaProperties, Curve, Outline, OutlineView};
 use crate::geometry::grading::Ladder;
 use crate::geometry::nodes::Nodes;
 use crate::geometry::pose::Pose;
@@ -75,6 +75,8 @@ pub struct BoundaryRecord<R> {
     pub(crate) reach: R,
     /// Greatest distance between neighbouring nodes.
     pub(crate) spacing: R,
+    /// Measures of what a link's outline encloses.
+    pub(crate) measures: AreaProperties<R>,
     /// What set-up noticed.
     pub(crate) notice: Status,
     /// Estimate of the relative error that comes from what is between the points of a curve; NaN where none was made.
@@ -112,6 +114,7 @@ impl<R: Real> Default for BoundaryRecord<R> {
             pose: Pose::default(),
             reach: R::zero(),
             spacing: R::zero(),
+            measures: AreaProperties::default(),
             notice: Status::Ok,
             outline_error: R::NAN,
         }
@@ -138,6 +141,10 @@ impl<R: Real> BoundaryRecord<R> {
     pub(crate) fn ladders<'a>(&self, store: &'a [R]) -> impl Iterator<Item = Ladder<R>> + use<'a, R> {
         let list = part(store, self.slots.ladders_at, 3 * self.ladders);
         list.as_chunks::<3>().0.iter().map(|&[t, beta, top]| Ladder { t, beta, top })
+    }
+    /// Whether a lone body's χ₃ is known: in closed form, or on the way to its isolated flow.
+    pub(crate) fn knows_rotation(&self, store: &[R]) -> bool {
+        self.slots.core_modes > 0 || matches!(self.view(store).curve, Curve::Ellipse(_))
     }
     /// χ₃ at a point of the outline, whose permanent parameter s is asked for where there is no closed form.
     pub(crate) fn rotation_potential(&self, store: &[R], x: Complex<R>, s: impl FnOnce() -> R) -> R {

@@ -107,7 +107,7 @@ fn ratio<R: Real>(a: R, b: R) -> f64 {
     (a.max(b) / a.min(b)).clamp(1.0, 1e6)
 }
 
-/// A scene whose automatic node counts were compared with its start (feature `alloc`): it describes the same with counts that are given.
+/// A scene whose automatic node counts were compared with its start, or are those of the rule (feature `alloc`): it describes the same with counts that are given.
 #[cfg(feature = "alloc")]
 pub struct Resolved<'s, S> {
     pub(crate) scene: &'s S,
@@ -116,7 +116,12 @@ pub struct Resolved<'s, S> {
 }
 
 #[cfg(feature = "alloc")]
-impl<S> Resolved<'_, S> {
+impl<'s, S> Resolved<'s, S> {
+    /// The same scene with the counts of the rule, not compared with its start.
+    pub fn by_rule(scene: &'s S) -> Self {
+        Resolved { scene, factor: 1.0 }
+    }
+
     fn nodes<R: Real>(&self, given: usize, shape: &Shape<'_, R>) -> usize
     where
         S: Description<R>,
@@ -175,5 +180,8 @@ impl<R: Real, S: Description<R>> Description<R> for Resolved<'_, S> {
     }
     fn link(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
         self.scene.link(b, l).map(|link| Link { nodes: self.nodes(link.nodes, &link.shape), ..link })
+    }
+    fn link_as_given(&self, b: usize, l: usize) -> Option<Link<'_, R>> {
+        self.scene.link_as_given(b, l)
     }
 }

@@ -59,6 +59,24 @@ impl<'a, R: Real> Model<'a, R> {
         })
     }
 
+    /// The plan of a scene's model without the model: automatic node counts are those of the rule, which [`ModelBuf::new`](crate::ModelBuf::new)
+    /// raises where the start needs more. O(points) and O(bodies), or O(bodies²) where many differ; neither matrices nor outlines are made, nor
+    /// are outlines checked.
+    ///
+    /// # Errors
+    /// As [`Model::requirement`], and errors of signals; `OutOfMemory`.
+    #[cfg(feature = "alloc")]
+    pub fn planned(scene: &impl Description<R>) -> Result<Plan> {
+        use crate::base::memory::filled;
+        let need = Self::requirement(scene)?;
+        let traits = Traits::of(scene);
+        let layout = lay_out(scene, &traits, |_, _, _| ())?;
+        let mut coordinates = filled(need.coordinates)?;
+        let signals = motions(scene).fold(0_usize, |sum, signal| sum.saturating_add(signal.store_len()));
+        let channels = build_coordinates(scene, &mut coordinates, &mut filled::<R>(signals)?, 0)?;
+        Ok(head(scene, &traits, &layout, &coordinates, channels).plan)
+    }
+
     /// Compiles a scene into the caller's memory. O(N³) once for shapes other than ellipses, else O(N²).
     ///
     /// # Errors
@@ -80,7 +98,7 @@ impl<'a, R: Real> Model<'a, R> {
         let store = &mut *memory.reals;
         let (store, scratch) = store.split_at_mut_checked(layout.scratch_at).ok_or(Status::MemoryTooSmall)?;
         build_boundaries(scene, &traits, memory.boundaries, store, scratch)?;
-        build_links(scene, memory.links, memory.boundaries, store)?;
+        build_links(scene, memory.links, memory.boundaries)?;
         let channels = build_coordinates(scene, memory.coordinates, store, layout.signals_at)?;
         let mut head =
             head(scene, &traits, &layout, memory.coordinates.get(..need.coordinates).unwrap_or(&[]), channels);

@@ -5,7 +5,7 @@
 use crate::base::scalar::Real;
 use crate::base::status::Place;
 use crate::geometry::pose::Pose;
-use crate::scene::{Description, Link, Mass, Shape, each_link};
+use crate::scene::{Description, Link, Mass, Shape, each_link, each_link_as_given};
 use crate::setup::automatic_nodes::target;
 
 /// One boundary as the scene gives it.
@@ -16,7 +16,6 @@ pub(crate) struct Item<'a, R> {
     pub(crate) shape: Shape<'a, R>,
     /// Chosen where none are given.
     pub(crate) nodes: usize,
-    given: usize,
     /// Centre of mass from the centroid; `None` for walls (frame = drawing frame).
     pub(crate) centre: Option<[R; 2]>,
     pub(crate) circulation: R,
@@ -34,7 +33,6 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
         link: None,
         shape: w.shape,
         nodes: nodes(w.nodes, &w.shape),
-        given: w.nodes,
         centre: None,
         circulation: w.circulation,
         pose: Pose::new(w.position[0], w.position[1], w.angle),
@@ -46,7 +44,6 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
         link: Some(i),
         shape: link.shape,
         nodes: nodes(link.nodes, &link.shape),
-        given: link.nodes,
         centre: Some(match link.mass {
             Mass::Density(_) => [R::zero(); 2],
             Mass::Given { centre_of_mass, .. } => centre_of_mass,
@@ -62,7 +59,8 @@ pub(crate) fn items<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterat
 pub(crate) fn shapes<'a, R: Real, S: Description<R>>(scene: &'a S) -> impl Iterator<Item = (Place, Shape<'a, R>)> {
     let tank = scene.tank().into_iter().map(|w| (Place::Tank, w.shape));
     let obstacles = (0..scene.obstacle_count()).filter_map(|i| Some((Place::Obstacle(i), scene.obstacle(i)?.shape)));
-    tank.chain(obstacles).chain(each_link(scene).map(|(b, l, link)| (Place::Link(b, l), link.shape)))
+    let places = (0..scene.body_count()).flat_map(|b| (0..scene.link_count(b)).map(move |l| Place::Link(b, l)));
+    tank.chain(obstacles).chain(places.zip(each_link_as_given(scene).map(|link| link.shape)))
 }
 
 /// The first boundary before boundary `i` whose compiled outline, nodes and self block serve for it as well, if any: a link
@@ -74,9 +72,9 @@ pub(crate) fn twin_of<R: Real, S: Description<R>>(scene: &S, i: usize, item: &It
         Mass::Given { centre_of_mass, .. } => centre_of_mass,
     };
     // What is given alike is chosen alike.
-    let same = |other: &Link<'_, R>| {
-        other.nodes == item.given && other.shape == item.shape && Some(centre(other)) == item.centre
-    };
-    let twin = each_link(scene).take(own).position(|(_, _, other)| same(&other))?;
+    let given = each_link_as_given(scene).nth(own)?.nodes;
+    let same =
+        |other: &Link<'_, R>| other.nodes == given && other.shape == item.shape && Some(centre(other)) == item.centre;
+    let twin = each_link_as_given(scene).take(own).position(|other| same(&other))?;
     Some(i.checked_sub(own)? + twin)
 }

@@ -46,7 +46,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
     traits: &Traits,
     mut slot: impl FnMut(usize, usize, Slots),
 ) -> Result<Layout> {
-    let (mut layout, mut at, mut scratch) = (Layout::default(), 0, 0);
+    let (mut layout, mut at, mut scratch, mut lone_inside) = (Layout::default(), 0, 0, true);
     let fluid = traits.fluid;
     let general = fluid && traits.formulation != Formulation::Kirchhoff;
     let walls = wall_count(scene);
@@ -106,7 +106,9 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
                 }
             }
             scratch = scratch.max(item.shape.scratch_len().map_err(at_place)?);
-            if fluid && !closed && (item.link.is_some() || s.core_modes > 0) {
+            // A lone body does without the potential of rotation inside.
+            lone_inside = closed || s.core_modes > 0;
+            if fluid && !closed && ((general && item.link.is_some()) || s.core_modes > 0) {
                 scratch = scratch.max(potential_scratch(&s, item.nodes).ok_or(Status::SizeOverflow)?);
             }
         }
@@ -121,7 +123,7 @@ pub(crate) fn lay_out<R: Real, S: Description<R>>(
             (layout.walls_regular_at, at) = (at, sum(at, square(layout.wall_nodes)?)?);
         }
         if traits.formulation == Formulation::Kirchhoff {
-            scratch = scratch.max(crate::dynamics::kirchhoff::scratch_len(layout.unknowns)?);
+            scratch = scratch.max(crate::dynamics::kirchhoff::scratch_len(layout.unknowns, lone_inside)?);
         }
     }
     if traits.graded && traits.repels {

@@ -100,7 +100,7 @@ impl<'s, S> Resolved<'s, S> {
     where
         S: Description<R>,
     {
-        let mut best = (Resolved { scene, factor: 1.0 }, None);
+        let mut best = (Resolved::by_rule(scene), None);
         if !automatic(scene) {
             return Ok(best);
         }

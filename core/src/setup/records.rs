@@ -56,15 +56,20 @@ pub(crate) fn build_boundaries<R: Real, S: Description<R>>(
         }
         let own = part(store, record.slots.store_at, record.slots.store_len);
         if let Some(centre) = item.centre {
-            let area = record.outline.view(own).properties().map_err(at_place)?;
-            record.origin = area.centroid + complex(centre[0], centre[1]);
+            record.measures = record.outline.view(own).properties().map_err(at_place)?;
+            record.origin = record.measures.centroid + complex(centre[0], centre[1]);
         }
         fill_nodes(record, store).map_err(at_place)?;
         if !traits.fluid {
             continue;
         }
         if item.link.is_some() {
-            fill_rotation_potential(record, store, scratch).map_err(at_place)?;
+            if traits.formulation != Formulation::Kirchhoff || record.knows_rotation(store) {
+                fill_rotation_potential(record, store, scratch).map_err(at_place)?;
+            } else {
+                // Nothing reads it: were that to change, it would be seen.
+                part_mut(store, record.slots.data_at + 7 * item.nodes, item.nodes).fill(R::NAN);
+            }
             if traits.formulation != Formulation::Kirchhoff {
                 let n2 = item.nodes * item.nodes;
                 // The blocks lie behind the node arrays they are made from.
@@ -152,16 +157,12 @@ pub(crate) fn build_links<R: Real, S: Description<R>>(
     scene: &S,
     links: &mut [LinkRecord<R>],
     boundaries: &[BoundaryRecord<R>],
-    store: &[R],
 ) -> Result<()> {
     let walls = wall_count(scene);
     let (mut coordinate, mut root) = (0, 0);
     for (i, (b, l, link)) in each_link(scene).enumerate() {
         let Some(boundary) = boundaries.get(walls + i) else { return Err(Status::Internal.into()) };
-        let area = boundary
-            .outline
-            .view(crate::base::memory::part(store, boundary.slots.store_at, boundary.slots.store_len))
-            .properties()?;
+        let area = boundary.measures;
         let centroid = area.centroid - boundary.origin;
         let (mass, inertia) = match link.mass {
             Mass::Density(d) => (d * area.area, d * area.polar_moment),

@@ -156,12 +156,11 @@ impl<R: Real> Source<'_, R> {
         let aim = -away;
         let curve = &self.view.curve;
         // A step of at most four spacings of the parameter.
-        let speed = cabs(curve.jet_real(t_j)[1]);
-        let limit = R::lit(4.0) * self.nodes.step * cabs(tangent) / speed;
-        let mut u = Complex::<R>::default();
+        let mut slope = curve.jet_real(t_j)[1];
+        let limit = R::lit(4.0) * self.nodes.step * cabs(tangent) / cabs(slope);
+        let (mut u, mut change) = (Complex::<R>::default(), Complex::<R>::default());
         for _ in 0..24 {
-            let slope = curve.jet(u + t_j)[1];
-            let mut step = (aim - curve.delta(t_j, u)) / slope;
+            let mut step = (aim - change) / slope;
             let size = cabs(step);
             if !size.is_finite() {
                 return None;
@@ -173,10 +172,10 @@ impl<R: Real> Source<'_, R> {
             if size <= R::lit(4.0) * R::EPSILON * cabs(u) {
                 return Some(u);
             }
+            [change, slope] = curve.change(t_j, u);
             if size <= R::EPSILON.sqrt() * R::lit(0.01) * cabs(u) {
                 // One more step reaches rounding.
-                let slope = curve.jet(u + t_j)[1];
-                let last = (aim - curve.delta(t_j, u)) / slope;
+                let last = (aim - change) / slope;
                 return cabs(last).is_finite().then_some(u + last);
             }
         }

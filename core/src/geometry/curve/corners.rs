@@ -70,13 +70,21 @@ impl<'a, R: Real> Kinked<'a, R> {
         Kinked { points, corners, given, sorted, size, from: frame(points) }
     }
 
-    /// Corners given are points of the curve. Errors: `OutOfRange` with the number.
+    /// Corners given are points of the curve, each once. Errors: `OutOfRange`, `BadShape` with the number.
     pub(super) fn check(&self) -> Result<()> {
         let Corners::At(given) = self.corners else { return Ok(()) };
-        match given.iter().find(|k| **k >= self.given.len()) {
-            Some(k) => Err(Error::new(Status::OutOfRange).of("corner", *k as f64)),
-            None => Ok(()),
+        if let Some(k) = given.iter().find(|k| **k >= self.given.len()) {
+            return Err(Error::new(Status::OutOfRange).of("corner", *k as f64));
         }
+        let mut others = given.iter();
+        while let Some(k) = others.next() {
+            // Where they increase the next one tells.
+            let repeated = if self.sorted { others.clone().next() == Some(k) } else { others.clone().any(|o| o == k) };
+            if repeated {
+                return Err(Error::new(Status::BadShape).of("corner", *k as f64));
+            }
+        }
+        Ok(())
     }
 
     /// Point `k` steps on from point `i`.
@@ -419,5 +427,9 @@ mod tests {
         }
         let wrong = Kinked::new(&points, Corners::At(&[16])).check().unwrap_err();
         assert_eq!((wrong.status, wrong.what, wrong.value), (Status::OutOfRange, "corner", 16.0));
+        for twice in [&[0, 3, 3, 8][..], &[8, 3, 0, 3]] {
+            let wrong = Kinked::new(&points, Corners::At(twice)).check().unwrap_err();
+            assert_eq!((wrong.status, wrong.what, wrong.value), (Status::BadShape, "corner", 3.0));
+        }
     }
 }

@@ -4,7 +4,8 @@
 //! part of its radius, wherever along the outline it is added, a plate's by that of its length. A quarter of the points tells how fast the rest
 //! converges: as it did from a quarter to a half, it is taken to do from a half to all. Where a curve turns by far without a corner, the bulge
 //! of an arc over the longer side counts: there, one half knows no more than the other. So does what the curve leaves the chord by where a side
-//! is far longer than those beside it: it may be straight, or an arc whose points were lost.
+//! is far longer than those beside it: it may be straight, or an arc whose points were lost. Where it is far shorter, its direction bends the
+//! curve beside it, and either half has but one of its ends: the curve through all is compared with them.
 //!
 //! Tested by the tests at its end, `tests/tests/outlines.rs`.
 
@@ -28,6 +29,11 @@ const SLOWEST: f64 = 2.0;
 /// A side so many times longer than those beside it is a gap, looked at in so many places.
 const GAP: f64 = 3.0;
 const SAMPLES: usize = 16;
+/// Places that are looked at on a side beside a pair of close points, by how much more than at the points left out the curve through all
+/// leaves that through a half where it is bent by the pair, and how much more than the area between may come of it.
+const PLACES: usize = 5;
+const BENT: f64 = 2.0;
+const MARGIN: f64 = 4.0;
 /// A turn above this one, at a point that is no corner, may be anything.
 const UNKNOWN_TURN: f64 = core::f64::consts::PI / 3.0;
 
@@ -37,11 +43,13 @@ struct Told<R> {
     corners: Vec<usize>,
     /// Points left out, each with the number of the point before it.
     left: Vec<(usize, [R; 2])>,
+    /// How many places after the first corner the points of a half stood.
+    places: Vec<usize>,
 }
 
 impl<R: Real> Told<R> {
     fn room(points: usize, corners: usize) -> Result<Self> {
-        Ok(Told { points: room(points)?, corners: room(corners)?, left: room(points)? })
+        Ok(Told { points: room(points)?, corners: room(corners)?, left: room(points)?, places: room(points)? })
     }
 
     /// The corners and every second point between them, from the first or the second on.
@@ -50,7 +58,8 @@ impl<R: Real> Told<R> {
         let start = self.corners.first().copied().unwrap_or(0);
         let mut half = Self::room(n, self.corners.len())?;
         let (mut corners, mut since) = (self.corners.iter().peekable(), 0_usize);
-        for (i, p) in self.points.iter().enumerate().skip(start).chain(self.points.iter().enumerate().take(start)) {
+        let turned = self.points.iter().enumerate().skip(start).chain(self.points.iter().enumerate().take(start));
+        for (place, (i, p)) in turned.enumerate() {
             let corner = corners.next_if(|c| **c == i).is_some();
             if corner {
                 since = 0;
@@ -60,6 +69,7 @@ impl<R: Real> Told<R> {
             let seam = odd && self.corners.is_empty() && n % 2 == 1 && i + 1 == n;
             if corner || seam || since.is_multiple_of(2) != odd {
                 half.points.push(*p);
+                half.places.push(place);
             } else {
                 // Before the first one kept is after the last one.
                 half.left.push((half.points.len().wrapping_sub(1), *p));
@@ -113,6 +123,51 @@ impl<R: Real> Told<R> {
             // Between two corners sides are straight.
             !(corner(*k) && corner(k + 1)) && before.max(after) * R::lit(GAP) <= side(*k)
         })
+    }
+
+    /// Numbers of the points after which a side is far shorter than those beside it, but for what is beyond a corner: small errors of its
+    /// ends turn it by far, and the curve with it, while either half has only one of them.
+    fn pairs(&self) -> impl Iterator<Item = usize> {
+        let n = self.points.len();
+        let p = move |k: usize| self.points.get(k % n.max(1)).map_or(Complex::default(), |[x, y]| complex(*x, *y));
+        let side = move |k: usize| cabs(p(k + 1) - p(k));
+        let corner = move |k: usize| self.corners.binary_search(&(k % n.max(1))).is_ok();
+        (0..n).filter(move |k| {
+            let beside = |corner: bool, side: R| if corner { R::MAX } else { side };
+            let shorter = beside(corner(*k), side(k + n - 1)).min(beside(corner(k + 1), side(k + 1)));
+            shorter < R::MAX && side(*k) * R::lit(GAP) <= shorter
+        })
+    }
+
+    /// Points of the curve on the sides beside pairs, each with the number of the point before it.
+    fn beside_pairs(&self) -> Result<Vec<(usize, [R; 2])>> {
+        let count = self.pairs().count();
+        let mut all = room(count.saturating_mul(2 * PLACES))?;
+        if count == 0 {
+            return Ok(all);
+        }
+        let through = Through::new(&self.points, &self.corners)?;
+        let (curve, n) = (through.curve(), self.points.len());
+        for k in self.pairs().flat_map(|k| [if k > 0 { k - 1 } else { n - 1 }, after(k, n)]) {
+            let (from, to) = through.around(k);
+            let (start, end) = (through.knot(from), through.knot(to));
+            all.extend((1..=PLACES).map(|i| {
+                let z = curve.jet_real(start + (end - start) * (R::count(i) / R::count(PLACES + 1)))[0];
+                (k, [z.re, z.im])
+            }));
+        }
+        Ok(all)
+    }
+
+    /// The same half with other points to look at, of the curve through all of the points of `whole`.
+    fn looks_at(&mut self, all: &[(usize, [R; 2])], whole: &Self) {
+        let (n, start) = (whole.points.len(), whole.corners.first().copied().unwrap_or(0));
+        let last = self.points.len().saturating_sub(1);
+        self.left.clear();
+        self.left.extend(all.iter().map(|(k, z)| {
+            let place = (k + n - start) % n.max(1);
+            (self.places.partition_point(|p| *p <= place).wrapping_sub(1).min(last), *z)
+        }));
     }
 
     /// How far the curve leaves the chords of gaps, and the area between.
@@ -232,9 +287,10 @@ fn estimated<R: Real>(kinked: &Kinked<'_, R>) -> Result<R> {
     let area = area(p, n).abs();
     let reach = (0..n).fold(R::zero(), |l, k| l.max(cabs(p(k) - p(0)))) * R::HALF;
     let relative = |[most, missed]: [R; 2]| (most * R::TWO / reach).max(missed / area);
-    let (mut half, mut quarter) = (R::zero(), R::zero());
+    let (mut half, mut quarter, mut apart, mut bent) = (R::zero(), R::zero(), R::zero(), R::zero());
+    let beside = told.beside_pairs()?;
     for odd in [false, true] {
-        let fewer = told.halved(odd)?;
+        let mut fewer = told.halved(odd)?;
         if fewer.points.len() < 3 {
             return Ok(R::one());
         }
@@ -243,7 +299,15 @@ fn estimated<R: Real>(kinked: &Kinked<'_, R>) -> Result<R> {
         if fewest.points.len() >= 3 {
             quarter = quarter.max(relative(fewest.missed()?));
         }
+        if !beside.is_empty() {
+            fewer.looks_at(&beside, &told);
+            let [most, missed] = fewer.missed()?;
+            apart = apart.max(most * R::TWO / reach);
+            bent = bent.max(missed * R::lit(MARGIN / PLACES as f64) / area);
+        }
     }
+    // On a smooth curve it leaves that through a half no farther than its points do.
+    let bent = if apart > half * R::lit(BENT) { bent } else { R::zero() };
     let falls = if half > R::zero() { (quarter / half).max(R::lit(SLOWEST)).min(R::lit(FASTEST)) } else { R::one() };
     let mut corners = told.corners.iter().peekable();
     let bulges = (0..n).filter(|i| corners.next_if(|c| **c == *i).is_none()).map(|i| {
@@ -254,5 +318,5 @@ fn estimated<R: Real>(kinked: &Kinked<'_, R>) -> Result<R> {
         if turn < R::lit(UNKNOWN_TURN) { R::zero() } else { s / c * sides / reach }
     });
     let gaps = relative(told.bulging()?);
-    Ok(bulges.fold((half / falls).max(gaps), R::max))
+    Ok(bulges.fold((half / falls).max(gaps).max(bent), R::max))
 }

@@ -60,16 +60,20 @@ impl<'a, R: Real> Fourier<'a, R> {
         self.sum(|k| cis(t * k))
     }
 
-    pub(super) fn delta(&self, t: R, u: Complex<R>) -> Complex<R> {
-        let mut sum = Complex::default();
+    /// γ(t + u) − γ(t) and γ′(t + u), in one pass.
+    pub(super) fn change(&self, t: R, u: Complex<R>) -> [Complex<R>; 2] {
+        let mut sums = [Complex::default(); 2];
         for branch in self.branches() {
             let (start, stride) = (branch.start, branch.stride);
             let long = stride * R::count(LANES);
             let powers = [cis(t * start), cis(t * stride), cis(t * long)];
             let changes = [start, stride, long].map(|k| cexpm1(perp(u * k)));
-            sum += computed(branch, Changes { branch, powers, changes });
+            for (total, part) in sums.iter_mut().zip(computed(branch, Changes { branch, powers, changes })) {
+                *total += part;
+            }
         }
-        sum
+        let [change, slope] = sums;
+        [change, perp(slope)]
     }
 }
 
@@ -213,8 +217,8 @@ impl<R: Real> Task for Powers<'_, R> {
     }
 }
 
-/// Σ c zᵏ (e^(iku) − 1) of one branch: the same powers, and the changes of their modes. e^(iku) − 1 goes from mode to mode, so that its
-/// relative accuracy in u is kept.
+/// Σ c zᵏ (e^(iku) − 1) and Σ k c zᵏ e^(iku) of one branch: the same powers, and the changes of their modes. e^(iku) − 1 goes from mode to
+/// mode, so that its relative accuracy in u is kept.
 struct Changes<'a, R> {
     branch: Branch<'a, R>,
     powers: [Complex<R>; 3],
@@ -222,29 +226,37 @@ struct Changes<'a, R> {
 }
 
 impl<R: Real> Task for Changes<'_, R> {
-    type Output = Complex<R>;
+    type Output = [Complex<R>; 2];
     #[inline(always)]
-    fn run(self) -> Complex<R> {
+    fn run(self) -> [Complex<R>; 2] {
         let Changes { branch, powers: [first, ratio, leap], changes: [change, step, far] } = self;
         let (chunks, rest) = branch.parts();
         let mut power = spread(first, |z| z * ratio);
         let mut moved = spread(change, |z| z * step + z + step);
         let (leap, far) = (all(leap), all(far));
-        let mut sum = [[R::zero(); LANES]; 2];
+        let [mut k, _] = spread(complex(branch.start, R::zero()), |k| complex(k.re + branch.stride, R::zero()));
+        let along = [branch.stride * R::count(LANES); LANES];
+        let [mut sum, mut slope] = [[[R::zero(); LANES]; 2]; 2];
         for c in chunks {
-            let [u, v] = product(product(c, power), moved);
+            let [x, y] = product(c, power);
+            let [u, v] = product([x, y], moved);
             sum = [plus(sum[0], u), plus(sum[1], v)];
-            power = product(power, leap);
+            slope = [plus(slope[0], times(k, plus(x, u))), plus(slope[1], times(k, plus(y, v)))];
+            (power, k) = (product(power, leap), plus(k, along));
             let [s, t] = product(moved, far);
             moved = [plus(plus(s, moved[0]), far[0]), plus(plus(t, moved[1]), far[1])];
         }
-        let [a, b] = sum.map(sum_of);
-        let (mut sum, mut power, mut change) = (complex(a, b), first_of(power), first_of(moved));
+        let [mut sum, mut slope] = [sum, slope].map(|[a, b]| complex(sum_of(a), sum_of(b)));
+        let ([mut k, ..], mut power, mut change) = (k, first_of(power), first_of(moved));
         for c in rest {
-            sum += c * power * change;
+            let term = c * power;
+            let moved = term * change;
+            sum += moved;
+            slope += (term + moved) * k;
+            k += branch.stride;
             power *= ratio;
             change = change * step + change + step;
         }
-        sum
+        [sum, slope]
     }
 }

@@ -3,6 +3,7 @@
 //! Tested by the tests at its end, `geometry/curve/tests.rs`, `tests/bad_input`.
 
 use super::corners::Kinked;
+use super::even::Even;
 use super::polygon::{self, CORNER};
 use super::polyline::{area, boxes_len, cross, crossing, distinct, frame, point, straight};
 use super::{Curve, Ellipse, Kind, Outline, through_points};
@@ -108,10 +109,9 @@ impl<R: Real> Outline<R> {
                 }
             }
             Curve::Polygon(polygon) => polygon.ladders().for_each(|l| visit(Some(l), l.t)),
-            Curve::Fourier(_) => {
-                let curve = self.kind.curve(store);
-                let step = R::TAU / R::count(self.samples.max(1));
-                let bend = |i: usize| bend(curve.jet_real(step * R::count(i)));
+            Curve::Fourier(curve) => {
+                let even = Even::new(curve, self.samples);
+                let bend = |i: usize| bend(even.jet(i));
                 let mut room = self.rungs;
                 bends(&bend, self.samples, self.perimeter).for_each(|ladder| {
                     let fits = self.rungs > 0 && ladder.count() <= room;
@@ -393,13 +393,14 @@ fn grade_bends<R: Real>(
     store: &mut [R],
 ) -> Result<Outline<R>> {
     let (own, graded) = store.split_at_mut_checked(kind.len()).ok_or(Status::MemoryTooSmall)?;
-    let curve = kind.curve(own);
+    let Curve::Fourier(curve) = kind.curve(own) else { return Err(Status::Internal.into()) };
     let samples = through_points::samples(points);
+    let even = Even::new(curve, samples);
     let step = R::TAU / R::count(samples);
     let mut perimeter = R::zero();
     let places = positions.as_chunks_mut::<2>().0.iter_mut().zip(shape.as_chunks_mut::<2>().0);
     for (i, (place, shape)) in places.enumerate() {
-        let jet = curve.jet_real(step * R::count(i));
+        let jet = even.jet(i);
         let [x, d, _] = jet;
         perimeter += cabs(d) * step;
         (*place, *shape) = ([x.re, x.im], bend(jet));

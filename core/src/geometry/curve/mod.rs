@@ -13,6 +13,7 @@
 mod added_mass_test;
 mod corners;
 mod ellipse;
+mod even;
 #[cfg(feature = "alloc")]
 mod every_second;
 mod fourier;
@@ -33,6 +34,7 @@ use crate::base::memory::part;
 use crate::base::scalar::Real;
 use crate::base::status::Result;
 use crate::geometry::grading::{Grading, Ladder, walk, write_fitting};
+use even::Even;
 use polygon::CORNER;
 use polyline::cross;
 
@@ -66,12 +68,12 @@ impl<R: Real> Curve<'_, R> {
         }
     }
 
-    /// γ(t + u) − γ(t) to relative accuracy in u.
-    pub fn delta(&self, t: R, u: Complex<R>) -> Complex<R> {
+    /// γ(t + u) − γ(t), to relative accuracy in u, and γ′(t + u).
+    pub fn change(&self, t: R, u: Complex<R>) -> [Complex<R>; 2] {
         match self {
-            Curve::Ellipse(c) => c.delta(t, u),
-            Curve::Polygon(c) => c.delta(t, u),
-            Curve::Fourier(c) => c.delta(t, u),
+            Curve::Ellipse(c) => [c.delta(t, u), c.jet(u + t)[1]],
+            Curve::Polygon(c) => [c.delta(t, u), c.jet(u + t)[1]],
+            Curve::Fourier(c) => c.change(t, u),
         }
     }
 }
@@ -119,7 +121,7 @@ impl<R: Real> Curve<'_, R> {
 }
 
 /// Integrals over the area inside an outline.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AreaProperties<R> {
     /// Area.
     pub area: R,
@@ -258,30 +260,34 @@ impl<R: Real> OutlineView<'_, R> {
         walk(&self.grading, n, &mut |jet| visit(self.node_of(jet)))
     }
 
+    /// Calls `visit` with `n` nodes in turn, even in s, or for Fourier sums in t.
+    fn around(&self, n: usize, mut visit: impl FnMut(Node<R>)) -> Result<()> {
+        let Curve::Fourier(fourier) = self.curve else { return self.walk(n, visit) };
+        let even = Even::new(fourier, n);
+        for k in 0..n {
+            let [x, dx, ddx] = even.jet(k);
+            visit(Node { t: R::TAU * R::count(k) / R::count(n), x, dx, ddx });
+        }
+        Ok(())
+    }
+
     /// Area, centroid, polar moment, perimeter and reach by boundary integrals: the trapezoid rule, in s for
     /// polygons, exact to rounding; closed form for ellipses. Errors: `Internal` as for the nodes.
     pub fn properties(&self) -> Result<AreaProperties<R>> {
-        let (n, graded) = match &self.curve {
+        let n = match &self.curve {
             Curve::Ellipse(ellipse) => return Ok(ellipse.properties()),
-            Curve::Polygon(_) => ((self.grading.rungs() * 8).max(2048), true),
+            Curve::Polygon(_) => (self.grading.rungs() * 8).max(2048),
             // Of the moments the rule in t leaves nothing from four times the highest mode on; the perimeter is near rounding too.
             Curve::Fourier(fourier) => {
                 let modes = fourier.modes().fold(R::zero(), |top, (k, _)| top.max(k.abs())).to_f64() as usize;
-                ((modes * 6).max(2048), false)
+                (modes * 6).max(2048)
             }
-        };
-        let visit = |n: usize, mut visit: &mut dyn FnMut(Node<R>)| {
-            if graded {
-                return self.walk(n, &mut visit);
-            }
-            (0..n).for_each(|k| visit(self.node_of([R::TAU * R::count(k) / R::count(n), R::one(), R::zero()])));
-            Ok(())
         };
         let step = R::TAU / R::count(n);
         let origin = (self.curve.jet_real(R::zero())[0] + self.curve.jet_real(R::PI)[0]) * R::HALF;
         let (mut area, mut first, mut polar, mut perimeter) =
             (R::zero(), Complex::<R>::default(), R::zero(), R::zero());
-        visit(n, &mut |node| {
+        self.around(n, |node| {
             let z = node.x - origin;
             let flux = cross(z, node.dx);
             area += flux;
@@ -294,7 +300,7 @@ impl<R: Real> OutlineView<'_, R> {
         let centroid = origin + shift;
         let (area, polar) = (area * step * R::HALF, polar * step / R::lit(4.0));
         let (mut reach, mut farthest) = (R::zero(), R::zero());
-        visit(n / 4, &mut |node| {
+        self.around(n / 4, |node| {
             let z = node.x - centroid;
             if cabs(z) > reach {
                 (reach, farthest) = (cabs(z), node.t);
