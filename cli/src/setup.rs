@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 use nekton::status::{Error, Place, Status};
 
-use crate::scene_file::{Integrator, Problem, SceneFile, percent};
+use crate::scene_file::words::percent;
+use crate::scene_file::{Integrator, Problem, SceneFile};
 use crate::trade::{Choice, Variant, counts, method, unit};
 use crate::waiting::Waiting;
 use nekton::{Model, ModelBuf, Plan, Resolved, Sim, SimBuf};
