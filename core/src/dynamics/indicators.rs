@@ -74,9 +74,9 @@ pub(crate) fn constant_error<R: Real>(model: &Model<'_, R>, factors: &Factors<'_
     links.fold(R::zero(), |m, b| m.max(of_motions(part(density, b.first, b.nodes))))
 }
 
-/// Largest error of a constant density on one boundary, or what it says of motions if that is more: the harmonic N of a kernel that
-/// makes it makes with the first harmonics of a motion and of what follows from it the harmonic N − 2, which for few nodes is larger by
-/// digits where both are small.
+/// Largest error of a constant density on one boundary, or what it says of motions if that is more: of the harmonics of a kernel the one
+/// that makes it is the N-th; with those of a motion and of what follows from it lower ones err, in all about as a harmonic N − 2 would,
+/// which for few nodes is larger by digits where both are small.
 pub(crate) fn of_motions<R: Real>(density: &[R]) -> R {
     let error = density.iter().fold(R::zero(), |m, x| m.max((*x - R::one()).abs()));
     let motions = (error.ln() * (R::one() - R::TWO / R::count(density.len().max(2)))).exp();
