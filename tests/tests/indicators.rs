@@ -300,9 +300,12 @@ fn error_of_random_scenes_is_within_the_bound_also_of_accelerations_and_of_each_
     assert!(largest <= 100.0, "{}", summary.table);
 }
 
+/// Half-axes, pose, velocity, circulation.
+type Oval = ([f64; 2], [f64; 3], [f64; 3], f64);
+
 /// Accelerations, mass (added and own), Christoffel force and bound of ellipses with circulations at their start.
 fn ellipses<const N: usize>(
-    parts: &[([f64; 2], [f64; 3], [f64; 3], f64); N],
+    parts: &[Oval; N],
     nodes: [usize; N],
     quadrature: Quadrature,
 ) -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>, f64) {

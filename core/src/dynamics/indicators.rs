@@ -181,9 +181,9 @@ fn highest_modes<R: Real>(density: &[R]) -> R {
             let mut wave = complex(*x * sign, R::zero());
             for sum in &mut sums {
                 *sum += wave;
-                wave = wave * at;
+                wave *= at;
             }
-            at = at * turn;
+            at *= turn;
         }
     }
     // Of the modes N/2 − m there are two, but for m = 0.
