@@ -290,14 +290,113 @@ fn automatic_nodes_follow_from_scene_and_tolerance_alone() {
 }
 
 #[test]
-fn error_of_random_scenes_without_circulation_is_within_the_bound_also_of_accelerations() {
-    // Six thousand evaluations are in docs/accuracy/indicators.csv.
+fn error_of_random_scenes_is_within_the_bound_also_of_accelerations_and_of_each_body_whatever_its_size() {
+    // More than six thousand evaluations are in docs/accuracy/indicators.csv.
     let summary = nekton_tests::indicator_study::summary(200);
     println!("{}", summary.table);
-    let [mass_or_force, acceleration] = summary.largest[0];
-    // The bound is a hundred indicators. One scene of these is beyond, by less than 3 and 3.5: three bodies in a row, the middle one
-    // thin, at gaps of 1e-2, where symmetry of the mass, halves of the force and the constant density all look better than they are.
-    assert!(mass_or_force <= 300.0 && acceleration <= 350.0, "{}", summary.table);
+    let [[mass_or_force, acceleration], with_circulation] = summary.largest;
+    // The bound is a hundred indicators.
+    let largest = with_circulation.into_iter().fold(mass_or_force.max(acceleration), f64::max);
+    assert!(largest <= 100.0, "{}", summary.table);
+}
+
+/// Half-axes, pose, velocity, circulation.
+type Oval = ([f64; 2], [f64; 3], [f64; 3], f64);
+
+/// Accelerations, mass (added and own), Christoffel force and bound of ellipses with circulations at their start.
+fn ellipses<const N: usize>(
+    parts: &[Oval; N],
+    nodes: [usize; N],
+    quadrature: Quadrature,
+) -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>, f64) {
+    let links: [_; N] = std::array::from_fn(|k| {
+        let ([a, b], .., circulation) = parts[k];
+        [nekton::scene::Link { circulation, ..link(Shape::Ellipse { a, b }, 1.0, nodes[k]) }]
+    });
+    let bodies: [_; N] = std::array::from_fn(|k| body(&links[k], parts[k].1, parts[k].2));
+    let mut sim = at_start(&Scene { bodies: &bodies, quadrature, allow_unresolved: true, ..Scene::new(1.0, 0.0) });
+    let mut sim = sim.view();
+    let bound = sim.indicators().unwrap().bound();
+    let accelerations = vector(&mut sim, |s, out| s.accelerations(out));
+    let mass = matrix(&mut sim, |s, out| s.mass_matrix(out));
+    (accelerations, mass, vector(&mut sim, |s, out| s.christoffel(out)), bound)
+}
+
+#[test]
+fn error_of_a_mode_that_the_boundary_system_nearly_does_not_see_is_within_the_bound() {
+    // Four ellipses at gaps of 3e-4 of the smaller one: 32 nodes are right to 1e-2, 64 to 1e-6, and 48 happen to be wrong by a fifth, while
+    // symmetry, halves of the force and the constant density are right to 6e-4.
+    let parts = [
+        ([0.2948390258686111, 0.04752080253284248], [0.0, 0.0, 1.0298147860198734], [-0.0211, -0.0308, 0.0737], 0.0),
+        (
+            [1.1135775063964581, 0.17031518957692898],
+            [-1.1348929287147276, 0.32654330517809405, 2.774375747626179],
+            [0.1181, 0.0435, 0.0714],
+            0.0,
+        ),
+        (
+            [0.489502764646102, 0.04018696865959224],
+            [-1.3893297932840705, 0.9981102348613539, 0.6191541876624971],
+            [13.364, 20.003, -31.337],
+            0.0,
+        ),
+        (
+            [0.4831026247236234, 0.16307726314158727],
+            [-1.7760702991343003, 1.2265334794276062, 6.080265597762309],
+            [-0.897, 2.071, 2.141],
+            0.0,
+        ),
+    ];
+    let (_, _, exact, _) = ellipses(&parts, [160; 4], Quadrature::Graded);
+    for nodes in [32, 48, 64] {
+        let (_, _, force, bound) = ellipses(&parts, [nodes; 4], Quadrature::Graded);
+        // By the largest force, which is on the body that is fast.
+        let error = difference(&force, &exact);
+        println!("{nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+        assert!(error <= bound, "{nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+        assert!(nodes != 48 || error > 0.1, "nothing to see: {error:.1e}");
+    }
+}
+
+#[test]
+fn error_of_a_small_body_beside_a_large_circulation_is_within_the_bound() {
+    let parts = [
+        (
+            [0.008308626145451409, 0.0011087901937355358],
+            [0.0, 0.0, 2.50355725281167],
+            [-3.7056948394490767, -1.7693460990280843, 419.75865360442276],
+            0.048544465962270196,
+        ),
+        (
+            [1.1217854288628106, 0.8265588084623006],
+            [0.8764408247811966, 0.6724721448703236, 4.0132148372140275],
+            [-0.08529052841332357, -0.029785294088479235, 0.07114719773566626],
+            0.17240002252058026,
+        ),
+    ];
+    let (exact, ..) = ellipses(&parts, [224, 336], Quadrature::Graded);
+    for nodes in [32, 48, 64, 96] {
+        let (accelerations, .., bound) = ellipses(&parts, [nodes; 2], Quadrature::Graded);
+        let error = difference(&accelerations[..2], &exact[..2]);
+        println!("{nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+        assert!(error <= bound, "{nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+    }
+}
+
+#[test]
+fn error_of_a_few_nodes_about_what_is_nearly_a_disc_is_within_the_bound() {
+    // The constant density is wrong by about qᴺ, q = (a − b)/(a + b), the inertia of rotation by about qᴺ⁻².
+    for (b, nodes, alone) in [(0.88, 8, true), (0.95, 8, true), (0.8, 12, true), (0.88, 8, false), (0.95, 8, false)] {
+        let parts = [([1.0, b], [0.0, 0.0, 0.3], [0.3, 0.2, 0.1], 0.0), ([1.0, b], [1e3, 0.0, 0.0], [0.0; 3], 0.0)];
+        let of = |nodes| match alone {
+            true => ellipses(&[parts[0]], [nodes], Quadrature::Plain),
+            false => ellipses(&parts, [nodes; 2], Quadrature::Plain),
+        };
+        let ((_, mass, _, bound), (_, exact, ..)) = (of(nodes), of(96));
+        let error = (0..3).fold(0.0, |m: f64, k| m.max((mass[k][k] - exact[k][k]).abs() / exact[k][k]));
+        println!("b {b}, {nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+        assert!(error > 1e-13 && error <= bound, "b {b}, {nodes} nodes: error {error:.1e}, bound {bound:.1e}");
+    }
 }
 
 /// Nodes of an ellipse with half-axes `a`, `b` at `pose`: point, and outward normal times its length.
@@ -343,7 +442,8 @@ fn constant_error(ovals: &[([f64; 2], [f64; 3])], n: usize) -> f64 {
 
 #[test]
 fn indicator_of_quadrature_is_the_error_of_the_constant_density() {
-    let ovals = [([1.0, 0.3], [0.0, 0.0, 0.3]), ([0.7, 0.4], [1.0, 1.3, -0.4])];
+    // So far apart that the highest modes of the densities say less.
+    let ovals = [([1.0, 0.3], [0.0, 0.0, 0.3]), ([0.7, 0.4], [1.6, 2.2, -0.4])];
     for count in [1, 2] {
         for (nodes, shortcuts) in [(16, true), (16, false), (24, false)] {
             let links = ovals.map(|(axes, _)| [link(Shape::Ellipse { a: axes[0], b: axes[1] }, 1.0, nodes)]);

@@ -3,11 +3,12 @@
 //! Asymmetry of the added mass and the difference of the two halves of the force are as large as the error in general, but
 //! where a configuration mirrors itself they vanish whatever the error. What symmetry does not hide is how well the
 //! boundary system reproduces the one solution that is known exactly, the constant density: A 1 = 2 on bodies and
-//! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve.
+//! obstacles, 0 inside a tank, and 1 on the tank itself (0, and 1 of the completion). It costs one solve. Errors that are all of one mode
+//! which the system nearly does not see are told by the highest modes of the densities.
 //!
 //! Tested by `tests/indicators`, `tests/near_contact`.
 
-use crate::base::complex::complex;
+use crate::base::complex::{Complex, complex, dot};
 use crate::base::memory::{at, axpy, part, part_mut};
 use crate::base::scalar::Real;
 use crate::dynamics::evaluation::{Evaluation, Indicators};
@@ -28,9 +29,10 @@ pub struct Resolution<R> {
     /// is more to the energy of its motion over its reach, or to the largest force on any link, less by as much as the link is smaller
     /// than the largest. 0 with the boundary formula.
     pub force: R,
-    /// Error of the constant density on the links (by the plain rule also on walls) as a solution of the boundary system; with circulation also the error of the
+    /// Error of the constant density on the links (by the plain rule also on walls) as a solution of the boundary system; or three times the
+    /// share of a motion's inertia that lies in the highest modes of its densities, if that is more; with circulation also the error of the
     /// fluxes of the bodies' isolated flows through every boundary, or the difference of two approximations of these flows, relative to
-    /// the circulations, if that is more.
+    /// the circulation of that boundary, or of all, less by as much as it is smaller than the largest that carries some, if that is more.
     pub quadrature: R,
     /// Estimated error of the double integrals of the repulsion, relative to its largest force between two boundaries; 0 without
     /// repulsion.
@@ -69,8 +71,16 @@ pub(crate) fn constant_error<R: Real>(model: &Model<'_, R>, factors: &Factors<'_
     factors.solve(density);
     // Between walls an error may be large that no body feels; but by the plain rule a wall may be too thin for its own nodes.
     let links = model.boundaries.iter().filter(|b| b.link.is_some() || b.slots.table_len == 0);
-    let values = links.flat_map(|b| part(density, b.first, b.nodes));
-    values.fold(R::zero(), |m, x| m.max((*x - R::one()).abs()))
+    links.fold(R::zero(), |m, b| m.max(of_motions(part(density, b.first, b.nodes))))
+}
+
+/// Largest error of a constant density on one boundary, or what it says of motions if that is more: of the harmonics of a kernel the one
+/// that makes it is the N-th; with those of a motion and of what follows from it lower ones err, in all about as a harmonic N − 2 would,
+/// which for few nodes is larger by digits where both are small.
+pub(crate) fn of_motions<R: Real>(density: &[R]) -> R {
+    let error = density.iter().fold(R::zero(), |m, x| m.max((*x - R::one()).abs()));
+    let motions = (error.ln() * (R::one() - R::TWO / R::count(density.len().max(2)))).exp();
+    error.max(motions / R::lit(20.0))
 }
 
 impl<R: Real> Evaluation<'_, R> {
@@ -82,7 +92,22 @@ impl<R: Real> Evaluation<'_, R> {
             constant_error(model, &self.system.factors(), self.scratch.solution)
         };
         let Indicators { mass, force, repulsion, circulation } = self.kept.indicators;
-        Resolution { mass, force, quadrature: quadrature.max(circulation), repulsion }
+        let quadrature = quadrature.max(circulation).max(self.untold_inertia(model));
+        Resolution { mass, force, quadrature, repulsion }
+    }
+
+    /// Three times the largest share of a motion's inertia that lies in the highest modes of its densities: where a mode that hardly moves
+    /// the fluid is nearly a solution of the boundary system, all errors are of it, and neither asymmetry nor halves of the force nor the
+    /// constant density show them. Three times, since what the nodes do not tell is more than the highest that they do. O(N) per motion.
+    fn untold_inertia(&mut self, model: &Model<'_, R>) -> R {
+        let columns = self.columns.jacobian.len() / (3 * model.links.len()).max(1);
+        let columns = if model.head.plan.unknowns > 0 { columns } else { 0 };
+        (0..columns).fold(R::zero(), |worst, k| {
+            let (inertia, density) = (self.coupling(model, k, k), &*self.system.column(k));
+            let parts = model.boundaries.iter().map(|b| part(density, b.first, b.nodes));
+            let energy = parts.fold(R::zero(), |sum, u| sum + highest_modes(u)) * model.head.fluid_density;
+            if inertia > R::zero() { worst.max(R::lit(3.0) * energy / inertia) } else { worst }
+        })
     }
 
     /// The boundary on which the constant density of the last [`Evaluation::resolution`] errs most.
@@ -143,4 +168,25 @@ impl<R: Real> Evaluation<'_, R> {
         (self.forces.force, self.scratch.other, self.scratch.three) = (column, row, sizes);
         asymmetry
     }
+}
+
+/// Twice the energy, per unit density, of a harmonic flow that has at the boundary the largest of the four highest modes that N nodes can
+/// tell: π N/2 a². O(N).
+fn highest_modes<R: Real>(density: &[R]) -> R {
+    let n = R::count(density.len().max(1));
+    let (sin, cos) = (R::TAU / n).sin_cos();
+    let (turn, mut at, mut sums) = (complex(cos, sin), complex(R::one(), R::zero()), [Complex::<R>::default(); 4]);
+    for pair in density.as_chunks::<2>().0 {
+        for (x, sign) in pair.iter().zip([R::one(), -R::one()]) {
+            let mut wave = complex(*x * sign, R::zero());
+            for sum in &mut sums {
+                *sum += wave;
+                wave *= at;
+            }
+            at *= turn;
+        }
+    }
+    // Of the modes N/2 − m there are two, but for m = 0.
+    let [half, others @ ..] = sums.map(|x| dot(x, x));
+    others.into_iter().fold(half, |most, x| most.max(x * R::lit(4.0))) * R::PI * R::HALF / n
 }

@@ -10,6 +10,7 @@ use crate::base::scalar::Real;
 use crate::base::status::{Error, Place, Result, Status};
 use crate::dynamics::evaluation::{Counters, Evaluation, Indicators};
 use crate::dynamics::forces::circulation::ellipse_flow;
+use crate::dynamics::indicators::of_motions;
 use crate::fluid::configuration::Configuration;
 use crate::fluid::isolated::own_density;
 use crate::fluid::near::preimage::Source;
@@ -163,7 +164,7 @@ pub(crate) fn constants<R: Real>(
     let constant = part_mut(columns, 0, n);
     constant.fill(R::TWO);
     Factors { lu, ld: n, pivots }.solve(constant);
-    let quadrature = constant.iter().fold(R::zero(), |m, x| m.max((*x - R::one()).abs()));
+    let quadrature = of_motions(constant);
     let [a, b, c, d, e, f, g, i, j] = mass;
     let (bd, cg, fi) = ((b + d) * R::HALF, (c + g) * R::HALF, (f + i) * R::HALF);
     let size = (a.abs().max(e.abs())).max(j.abs() / (body.reach * body.reach));

@@ -99,10 +99,20 @@ fn sheets<'s, R: Real>(
     })
 }
 
-/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve. Returns the largest flux through a boundary by which the two
+/// By what the fluxes through a boundary are measured: its own circulation, or that of all, less by as much as it is smaller than the
+/// largest that carries some; what is small beside a large circulation may be all that a small body feels.
+fn flux_sizes<R: Real>(c: &Configuration<'_, R>) -> impl Fn(&BoundaryRecord<R>) -> R + use<R> {
+    let (mut total, mut reach) = (R::zero(), R::zero());
+    for (_, b, _) in cores(c) {
+        (total, reach) = (total + b.circulation.abs(), reach.max(b.reach));
+    }
+    move |b| b.circulation.abs().max(total * (b.reach / reach).min(R::one()))
+}
+
+/// Sets up the circulatory flow: Ψ, dn, β, φ. One solve. Returns the largest flux through a boundary, by its size, by which the two
 /// approximations of one core's flow differ.
 pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'_, R>, flow: &mut Flow<'_, R>) -> R {
-    let mut worst = R::zero();
+    let (mut worst, size) = (R::zero(), flux_sizes(c));
     flow.stream.fill(R::zero());
     flow.normal.fill(R::zero());
     flow.tangential.fill(R::zero());
@@ -128,7 +138,7 @@ pub(crate) fn solve<R: Real>(c: &Configuration<'_, R>, system: &BoundarySystem<'
                 add(flow.tangential, target.first + k, -strength * slope.im);
                 difference += cabs(n * (at.slope - at.velocity));
             }
-            worst = worst.max(difference * strength.abs());
+            worst = worst.max(difference * strength.abs() / size(target));
         }
     }
     multiply(system.regular, flow.stream, flow.potential);
@@ -153,16 +163,14 @@ fn own_flux<R: Real>(sheet: &Sheet<'_, R>, scale: R, out: &mut [R]) {
 /// that much less exact about thin bodies; how much the tabulated stream functions vary on their own boundaries; and, once, the
 /// difference that [`solve`] returned, found to be at least as large as the error of the gradient (and often far larger). O(N).
 pub(crate) fn data_error<R: Real>(c: &Configuration<'_, R>, flow: &Flow<'_, R>, difference: R) -> R {
-    let total = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation.abs());
-    let all = cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation);
-    let mut worst =
-        cores(c).fold(difference / R::lit(10.0), |worst, (_, b, _)| worst.max(b.circulation.abs() * b.core.spread));
+    let (size, all) = (flux_sizes(c), cores(c).fold(R::zero(), |sum, (_, b, _)| sum + b.circulation));
+    let mut worst = cores(c).fold(R::zero(), |worst, (_, b, _)| worst.max(b.core.spread));
     for (_, b, _) in c.each_boundary() {
         let sum = |x: &[R]| part(x, b.first, b.nodes).iter().fold(R::zero(), |sum, x| sum + *x);
         let inside = if b.sign > R::zero() { -all } else { b.circulation };
-        worst = worst.max((sum(flow.normal) + inside).abs()).max(sum(flow.tangential).abs());
+        worst = worst.max((sum(flow.normal) + inside).abs().max(sum(flow.tangential).abs()) / size(b));
     }
-    worst / total * R::lit(10.0)
+    (worst * R::lit(10.0)).max(difference)
 }
 
 /// `out = G x` for a column-major square matrix.
