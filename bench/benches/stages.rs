@@ -6,7 +6,7 @@ use nekton::lu::{Factors, factor};
 use nekton::scene::Quadrature;
 use nekton::stages::Stage;
 use nekton::{Method, ModelBuf, Real, SimBuf};
-use nekton_bench::rows::diagonal_dominant;
+use nekton_bench::lapack::diagonal_dominant;
 use nekton_bench::scenes::{array, ellipse, scene};
 use nekton_tests::simulation;
 use std::fmt;

@@ -2,7 +2,8 @@
 //! clock on the wall, since two threads have no processor time in common: on a busy machine these values say little.
 
 use crate::lapack::Lapack;
-use crate::rows::{Held, Row, diagonal_dominant, ellipses};
+use crate::lapack::diagonal_dominant;
+use crate::rows::{Held, Row, ellipses};
 use crate::timing::{Measured, Turns};
 use nekton::Factorization;
 use nekton::scene::Quadrature;

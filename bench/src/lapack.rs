@@ -102,3 +102,15 @@ fn run<T>(getrf: Getrf<T>, a: &mut [T], ld: usize, n: usize, pivots: &mut [i32])
     unsafe { getrf(&order, &order, a.as_mut_ptr(), &leading, pivots.as_mut_ptr(), &mut info) };
     assert_eq!(info, 0, "getrf refused the matrix");
 }
+
+/// A matrix like those of the boundary systems: the unit matrix and something smaller.
+pub fn diagonal_dominant(n: usize, ld: usize) -> Vec<f64> {
+    let mut s = 1u64;
+    let mut random = || {
+        s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (s >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let mut a: Vec<f64> = (0..ld * n).map(|_| random() / n as f64).collect();
+    a.iter_mut().step_by(ld + 1).for_each(|x| *x += 1.0);
+    a
+}

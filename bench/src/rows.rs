@@ -1,6 +1,6 @@
 //! The rows of the table: what is measured against what, and what must come out.
 
-use crate::lapack::Lapack;
+use crate::lapack::{Lapack, diagonal_dominant};
 use crate::linearize;
 use crate::passing;
 use crate::scenes::{Evaluation, array, banks, ellipse, scene, swimmer};
@@ -92,18 +92,6 @@ fn beside_getrf(lapack: &Lapack, order: usize, candidate: &mut dyn FnMut()) -> M
         },
     ]);
     Measured { time: times[0], by: times[1], ratio: ratios[0], note: String::new() }
-}
-
-/// A matrix like those of the boundary systems: the unit matrix and something smaller.
-pub fn diagonal_dominant(n: usize, ld: usize) -> Vec<f64> {
-    let mut s = 1u64;
-    let mut random = || {
-        s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (s >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
-    let mut a: Vec<f64> = (0..ld * n).map(|_| random() / n as f64).collect();
-    a.iter_mut().step_by(ld + 1).for_each(|x| *x += 1.0);
-    a
 }
 
 fn one_against_other(mut one: Evaluation<f64>, mut other: Evaluation<f64>) -> Measured {

@@ -1,7 +1,6 @@
 //! Set-up with automatic nodes, of outlines that take long: seconds, beside one factorization of the nodes that come out.
 
-use crate::lapack::Lapack;
-use crate::rows::diagonal_dominant;
+use crate::lapack::{Lapack, diagonal_dominant};
 use crate::timing::{Measured, median, thread_seconds};
 use nekton::scene::{Scene, Shape};
 use nekton::{ModelBuf, Place};
