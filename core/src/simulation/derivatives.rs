@@ -35,14 +35,15 @@ impl<R: Real> Sim<'_, R> {
 
     /// Derivatives of the force r = M q̈ + F by positions and velocities at the state shown, for given accelerations `qdd` of the links
     /// (3n, world): `position` = ∂r/∂q and `velocity` = ∂r/∂q̇, 3n × 3n each, column-major, in N, kg/s and so on per unit of the
-    /// coordinates. F is everything but inertia: the Christoffel force (2.15), weight and buoyancy (2.16), repulsion (5.1); not the
-    /// forces of joints. Exact derivatives of the discrete force with nodes that stay where they are in their outlines. `memory`:
-    /// [`Sim::derivative_requirement`]. The simulation does not change. About the price of one evaluation, and of one more if nothing was
-    /// asked at this state.
+    /// coordinates. F is everything but inertia: the Christoffel force (2.15), weight and buoyancy (2.16), repulsion (5.1), circulation
+    /// (3.5), (3.6); not the forces of joints. Exact derivatives of the discrete force with nodes that stay where they are in their outlines;
+    /// of circulation by position, unless the body is alone, by central differences of fourth order. `memory`:
+    /// [`Sim::derivative_requirement`]. The simulation does not change. The price of two to three evaluations, of 12 n + 2 more with
+    /// circulation, and of one more if nothing was asked at this state.
     ///
     /// # Errors
-    /// `Length`, `NotFinite`, `MemoryTooSmall`; `Unsupported` with the name of what has no derivatives: `circulation`,
-    /// `force formula` (the boundary formula). As [`Sim::energy`].
+    /// `Length`, `NotFinite`, `MemoryTooSmall`; `Unsupported` with the name of what has no derivatives: `force formula` (the boundary
+    /// formula). As [`Sim::energy`].
     pub fn force_derivatives(
         &mut self,
         qdd: &[R],
@@ -97,7 +98,7 @@ impl<R: Real> Sim<'_, R> {
     /// The linearization of ẏ = f(t, y, θ) at the state shown, y as [`Sim::state`] gives it (d reals): `a` = ∂f/∂y, d × d, and `b` = ∂f/∂θ,
     /// d × `parameters.len()`, column-major. Derivatives of the discrete right-hand side [`Sim::rhs`], of the work of the drives too,
     /// with nodes that stay where they are in their outlines. `memory`: [`Sim::derivative_requirement`]. The simulation does not change:
-    /// a run goes on by the same bits. The price of about one more evaluation, and O(n³) for n links.
+    /// a run goes on by the same bits. The price of [`Sim::force_derivatives`], and O(n³) for n links.
     ///
     /// # Errors
     /// `Length`, `MemoryTooSmall`; `OutOfRange` with the name of a parameter that the model does not have; `Unsupported` as
