@@ -245,6 +245,22 @@ fn circulation_is_refused_by_name_and_leaves_zeros() {
 }
 
 #[test]
+fn the_boundary_formula_is_refused_by_name() {
+    with_scene(|def, _, _| {
+        def.force = NEKTON_FORCE_BOUNDARY;
+        let (_model_memory, model) = compile(def);
+        let (_memory, sim) = simulate(model, &adams());
+        let (d, size) = (plan(model).state_len, requirement(model));
+        let (mut mem, mut a, mut bound) = (memory(size), vec![7.0; d * d], 7.0);
+        let (p, place, mut diag) = (a.as_mut_ptr(), mem.as_mut_ptr().cast(), empty_diag());
+        let status =
+            unsafe { sim_linearize(sim, null(), 0, p, d * d, null_mut(), 0, &mut bound, place, size, &mut diag) };
+        assert_eq!((status, what(&diag).as_str()), (Status::Unsupported.code(), "force formula"));
+        assert!(a.iter().all(|x| *x == 0.0) && bound == 7.0);
+    });
+}
+
+#[test]
 fn every_wrong_argument_of_the_derivatives_of_forces_is_named() {
     with_model(false, |model| {
         let (_a, sim) = simulate(model, &fixed(NEKTON_METHOD_ABM4));
