@@ -54,9 +54,8 @@ fn regulator(f: &Square, g: &[f64; 5]) -> [f64; 5] {
         let s = (0..5).fold(r, |s, i| s + g[i] * pg[i]);
         k = std::array::from_fn(|j| (0..5).fold(0.0, |sum, i| sum + pg[i] * f[i][j]) / s);
         let closed: Square = std::array::from_fn(|i| std::array::from_fn(|j| f[i][j] - g[i] * k[j]));
-        let pf: Square = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (0..5).fold(0.0, |sum, m| sum + p[i][m] * closed[m][j]))
-        });
+        let pf: Square =
+            std::array::from_fn(|i| std::array::from_fn(|j| (0..5).fold(0.0, |sum, m| sum + p[i][m] * closed[m][j])));
         p = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let first = r * k[i] * k[j] + if i == j { q[i] } else { 0.0 };
