@@ -42,6 +42,11 @@ fn asked<R: Real>(sim: &mut Sim<'_, R>) -> [Vec<R>; 2] {
     [a, b]
 }
 
+fn indicators(sim: &mut Sim<'_, f64>) -> [u64; 5] {
+    let r = sim.indicators().unwrap();
+    [r.mass, r.force, r.quadrature, r.repulsion, r.bound()].map(f64::to_bits)
+}
+
 #[test]
 fn a_run_that_is_linearized_between_steps_goes_on_by_the_same_bits() {
     let step: f64 = 0.02;
@@ -54,14 +59,15 @@ fn a_run_that_is_linearized_between_steps_goes_on_by_the_same_bits() {
                         if ask {
                             asked(sim);
                         }
+                        // Before the first step those of the state shown.
+                        shown.extend(indicators(sim));
                         sim.step().unwrap();
                         let t = sim.time();
                         shown.extend(sim.state().iter().chain([&t]).map(|x| x.to_bits()));
                         if ask {
                             asked(sim);
                         }
-                        let indicators = sim.indicators().unwrap();
-                        shown.extend([indicators.mass, indicators.force].map(f64::to_bits));
+                        shown.extend(indicators(sim));
                         sim.advance_dense(t + 0.01, t + 0.02).unwrap();
                         if ask {
                             asked(sim);
