@@ -25,6 +25,7 @@ classdef Nekton < handle
 %   dy = sim.rhs(t, y)    its rate, for ode45, ode113, lsode; the simulation does not change
 %   sim.time, sim.positions, sim.velocities    3 x links: x, y, theta of the centres of mass, and their rates
 %   sim.massMatrix, sim.addedMass, sim.christoffel, sim.gyroscopic    at the present state
+%   [A, B, bound] = sim.linearize(names)    derivatives of the rates by state and parameters (see help Nekton.linearize)
 %   sim.energy            struct: kinetic_fluid, kinetic_bodies, buoyancy, repulsion, circulation, total, work
 %   sim.impulse           linear x, y and angular about the origin
 %   [tau, power] = sim.torques    of all joints;  [u, du] = sim.joints
@@ -298,6 +299,36 @@ classdef Nekton < handle
             f = nekton_mex(name, self.id);
         end
 
+        function [A, B, bound] = linearize(self, names)
+        %LINEARIZE  [A, B, bound] = linearize(names): derivatives of rhs at the state shown, A by the state and B by the
+        %   parameters named in the cell array names, a column each; bound of their relative error in space. Exact derivatives, no
+        %   differences; the simulation does not change. names may be left out. There are, links counted as in sim.links and joints
+        %   as in sim.jointNames,
+        %     fluid_density, gravity
+        %     link1.mass, link1.inertia                       masses of bodies; of the fluid nothing changes
+        %     link1.force_x, link1.force_y, link1.torque      from outside, at the centre of mass
+        %     joint1.torque, .stiffness, .damping, .rest      where a torque drives the joint; rest: unloaded value of its spring
+        %     joint1.position, .rate, .acceleration           where its motion is given
+        %   Not with circulation (nekton:sim:Unsupported). With controls: of those in the control step that the time is in.
+            if nargin < 2
+                names = {};
+            end
+            if ~iscellstr(names)
+                error('nekton:arg:class', 'linearize: the names must be a cell array of texts');
+            end
+            [known, rows] = self.parameters();
+            chosen = zeros(numel(names), 3);
+            for k = 1:numel(names)
+                at = find(strcmp(names{k}, known));
+                if isempty(at)
+                    error('nekton:arg:parameter', 'linearize: there is no ''%s'', but %s', names{k}, ...
+                        strtrim(sprintf('%s ', known{:})));
+                end
+                chosen(k, :) = rows(at, :);
+            end
+            [A, B, bound] = nekton_mex('linearize', self.id, chosen);
+        end
+
         function e = energy(self)
         %ENERGY  Struct of energies, J/m; total - work is constant.
             e = nekton_mex('energy', self.id);
@@ -434,6 +465,48 @@ classdef Nekton < handle
     end
 
     methods (Access = private)
+        function [names, rows] = parameters(self)
+            % What linearize knows by name, with kind, number and component.
+            names = {};
+            rows = zeros(0, 3);
+            % A lone swimmer keeps its impulse: forces from outside have no place in its state.
+            alone = self.plan.formulation == 2;
+            if self.plan.fluid
+                names{end + 1} = 'fluid_density';
+                rows(end + 1, :) = [1 0 0];
+            end
+            if ~alone
+                names{end + 1} = 'gravity';
+                rows(end + 1, :) = [2 0 0];
+            end
+            own = {'mass', 'inertia', 'force_x', 'force_y', 'torque'};
+            kinds = [3 0; 4 0; 5 1; 5 2; 5 3];
+            if alone
+                own = own(1:2);
+            end
+            for i = 1:self.plan.links
+                for k = 1:numel(own)
+                    names{end + 1} = sprintf('link%d.%s', i, own{k}); %#ok<AGROW>
+                    rows(end + 1, :) = [kinds(k, 1), i, kinds(k, 2)]; %#ok<AGROW>
+                end
+            end
+            driven = {'torque', 'stiffness', 'damping', 'rest'};
+            moved = {'position', 'rate', 'acceleration'};
+            facts = nekton_mex('joints', self.id);
+            for j = 1:size(facts, 1)
+                words = driven;
+                first = 6;
+                if facts(j, 3)
+                    words = moved;
+                    first = 10;
+                end
+                for k = 1:numel(words)
+                    names{end + 1} = sprintf('joint%d.%s', j, words{k}); %#ok<AGROW>
+                    rows(end + 1, :) = [first + k - 1, j, 0]; %#ok<AGROW>
+                end
+            end
+        end
+
         function prepare(self, next)
             % The controls of the control step that ends at next, unless they are set.
             if isempty(self.last) || self.last{3} ~= next

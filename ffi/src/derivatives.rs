@@ -1,6 +1,6 @@
 //! Derivatives of the motion, in memory of the caller. Without the feature `derivatives` they are refused.
 
-use crate::buffers::{input, output, sound};
+use crate::buffers::{input, length, output, sound};
 use crate::convert::{array, check_pointer};
 use crate::diag::{Fault, Outcome};
 use crate::memory::{check_memory, fill, overlap};
@@ -78,20 +78,26 @@ pub(crate) unsafe fn linearize<R: Real>(handle: *mut SimHandle<R>, asked: &Asked
     unsafe {
         let mut parts = sim(handle.cast_const())?;
         let rows = parts.view()?.state().len();
+        let (square, columns) = (rows.saturating_mul(rows), rows.saturating_mul(asked.count));
+        length(asked.a_len, square)?;
+        length(asked.b_len, columns)?;
         let definitions = array("parameters", asked.parameters, asked.count)?;
-        let (a, b) = (bytes(asked.a, asked.a_len), bytes(asked.b, asked.b_len));
-        apart("b", a, b)?;
+        let (a, b, bound) = (bytes(asked.a, square), bytes(asked.b, columns), bytes(asked.bound, 1));
         let given = bytes(asked.parameters, asked.count);
+        apart("b", a, b)?;
         apart("a", a, given)?;
         apart("b", b, given)?;
-        let memory = scratch(&parts, asked.mem, asked.len, &[a, b, given, bytes(asked.bound, 1)])?;
-        let a = output(&parts, "a", asked.a, asked.a_len, rows.saturating_mul(rows))?;
-        let b = output(&parts, "b", asked.b, asked.b_len, rows.saturating_mul(asked.count))?;
-        match fill_in(&mut parts, definitions, a, b, memory) {
-            Ok(bound) => {
-                sound(a.iter().chain(b.iter()).copied())?;
-                give(asked.bound, bound)
-            }
+        [a, b, given].into_iter().try_for_each(|other| apart("bound", bound, other))?;
+        if parts.overlaps(asked.bound.cast_const(), 1) {
+            return Err(Fault::of(Status::Aliasing, "bound", f64::NAN));
+        }
+        let memory = scratch(&parts, asked.mem, asked.len, &[a, b, given, bound])?;
+        let a = output(&parts, "a", asked.a, asked.a_len, square)?;
+        let b = output(&parts, "b", asked.b, asked.b_len, columns)?;
+        let answer = fill_in(&mut parts, definitions, a, b, memory);
+        let answer = answer.and_then(|bound| sound(a.iter().chain(b.iter()).copied()).map(|_| bound));
+        match answer {
+            Ok(bound) => give(asked.bound, bound),
             Err(fault) => {
                 a.fill(R::zero());
                 b.fill(R::zero());
@@ -135,7 +141,10 @@ fn fill_in<R: Real>(
 #[cfg(feature = "derivatives")]
 fn parameter(definition: &nekton_parameter) -> Result<nekton::Parameter, (Status, &'static str, i32)> {
     use nekton::Parameter as P;
-    let nekton_parameter { kind, index, component, .. } = *definition;
+    let nekton_parameter { kind, index, component, reserved } = *definition;
+    if reserved != 0 {
+        return Err((Status::Unsupported, "reserved", reserved));
+    }
     let of = || usize::try_from(index).map_err(|_| (Status::OutOfRange, "index", index));
     Ok(match kind {
         NEKTON_PARAMETER_FLUID_DENSITY => P::FluidDensity,
@@ -143,8 +152,8 @@ fn parameter(definition: &nekton_parameter) -> Result<nekton::Parameter, (Status
         NEKTON_PARAMETER_MASS => P::Mass(of()?),
         NEKTON_PARAMETER_INERTIA => P::Inertia(of()?),
         NEKTON_PARAMETER_WRENCH => {
-            let component = usize::try_from(component).map_err(|_| (Status::OutOfRange, "component", component))?;
-            P::Wrench(of()?, component)
+            let known = usize::try_from(component).ok().filter(|k| *k < 3);
+            P::Wrench(of()?, known.ok_or((Status::OutOfRange, "component", component))?)
         }
         NEKTON_PARAMETER_TORQUE => P::Torque(of()?),
         NEKTON_PARAMETER_STIFFNESS => P::Stiffness(of()?),
@@ -194,12 +203,12 @@ pub(crate) unsafe fn force_derivatives<R: Real>(handle: *mut SimHandle<R>, asked
         let position = output(&parts, "position", asked.position, square, square)?;
         let velocity = output(&parts, "velocity", asked.velocity, square, square)?;
         let answer = forces(&mut parts, qdd, position, velocity, memory);
-        if let Err(fault) = answer {
+        let answer = answer.and_then(|()| sound(position.iter().chain(velocity.iter()).copied()));
+        if answer.is_err() {
             position.fill(R::zero());
             velocity.fill(R::zero());
-            return Err(fault);
         }
-        sound(position.iter().chain(velocity.iter()).copied())
+        answer
     }
 }
 

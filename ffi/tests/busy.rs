@@ -3,10 +3,10 @@
 mod common;
 
 use common::double::*;
-use common::{empty_diag, what, with_scene};
+use common::{empty_diag, memory, what, with_scene};
 use nekton::Status;
 use nekton_ffi::types::*;
-use std::ptr::{null_mut, with_exposed_provenance_mut};
+use std::ptr::{null, null_mut, with_exposed_provenance_mut};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 const BUSY: i32 = Status::Busy as i32;
@@ -21,6 +21,9 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
     let (mut a, mut b, mut t, mut diag) = (vec![7.0; n * n * n], vec![7.0; n * n * n], 7.0, empty_diag());
     let (p, q) = (a.as_mut_ptr(), b.as_mut_ptr());
     let (from, to) = ([0.0; 4], [1.0; 4]);
+    let square = plan_of(other).state_len.pow(2);
+    let mut mem = memory(derivatives_size(other));
+    let forces = vec![0.0; n];
     let mut size = 7;
     let mut counters = nekton_counters::default();
     let (mut energy, mut gap) = (std::mem::MaybeUninit::uninit(), std::mem::MaybeUninit::uninit());
@@ -54,6 +57,8 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
             sim_repulsion(sim, p, n, d),
             sim_circulation_gradient(sim, p, n, d),
             sim_gyroscopic(sim, p, n * n, d),
+            sim_linearize(sim, null(), 0, p, square, q, 0, &mut t, mem.as_mut_ptr().cast(), 8 * mem.len(), d),
+            sim_force_derivatives(sim, forces.as_ptr(), n, p, q, mem.as_mut_ptr().cast(), 8 * mem.len(), d),
             sim_energy(sim, energy.as_mut_ptr(), d),
             sim_energy_drift(sim, p, d),
             sim_impulse(sim, p, d),
@@ -75,8 +80,16 @@ unsafe fn uses(sim: *mut SimHandle<f64>, other: *mut SimHandle<f64>, n: usize) -
     all
 }
 
+/// Bytes of memory that derivatives take.
+fn derivatives_size(sim: *const SimHandle<f64>) -> usize {
+    let (mut model, mut req) = (null(), nekton_req::default());
+    assert_eq!(unsafe { sim_model(sim, &mut model) }, 0);
+    assert_eq!(unsafe { sim_derivatives_req(model, &mut req, null_mut()) }, 0);
+    req.size
+}
+
 fn plan_of(sim: *const SimHandle<f64>) -> nekton_plan {
-    let mut model = std::ptr::null();
+    let mut model = null();
     assert_eq!(unsafe { sim_model(sim, &mut model) }, 0);
     plan(model)
 }

@@ -1,7 +1,7 @@
 //! C programs compiled with the system's compiler against nekton.h, nekton32.h and the static library.
 
 use nekton::scene::{Body, Drive, Harmonic, Joint, JointKind, Link, Mass, Repulsion, Root, Scene, Shape, Signal, Wall};
-use nekton::{Method, ModelBuf, Place, Real, Sim, SimBuf};
+use nekton::{Method, ModelBuf, Parameter, Place, Real, Sim, SimBuf};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -241,6 +241,19 @@ fn expected<R: Real>(mut check: impl FnMut(&str, &[R])) {
     ask("added_mass", 81, &mut |s, o| s.added_mass(o));
     ask("gyroscopic", 81, &mut |s, o| s.gyroscopic(o));
     ask("christoffel_tensor", 729, &mut |s, o| s.christoffel_tensor(o));
+    let parameters = [Parameter::FluidDensity, Parameter::Wrench(1, 2), Parameter::Torque(1)];
+    let rows = sim.state().len();
+    let mut mem = vec![r(0.0); Sim::derivative_requirement(&sim.model()).unwrap()];
+    let (mut a, mut b) = (vec![r(0.0); rows * rows], vec![r(0.0); rows * 3]);
+    let linearization = sim.linearize(parameters, &mut a, &mut b, &mut mem).unwrap();
+    check("linearize_a", &a);
+    check("linearize_b", &b);
+    check("linearize_bound", &[linearization.bound]);
+    let (mut qdd, mut position, mut velocity) = (vec![r(0.0); 9], vec![r(0.0); 81], vec![r(0.0); 81]);
+    sim.accelerations(&mut qdd).unwrap();
+    sim.force_derivatives(&qdd, &mut position, &mut velocity, &mut mem).unwrap();
+    check("by_position", &position);
+    check("by_velocity", &velocity);
     let energy = sim.energy().unwrap();
     check("total", &[energy.total]);
     check("work", &[energy.work]);

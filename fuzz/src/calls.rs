@@ -205,7 +205,7 @@ macro_rules! precision {
                     let mut diag = zeroed::<nekton_diag>();
                     // SAFETY: true pointers and lengths, or ones that are refused.
                     unsafe {
-                        match bytes.below(16) {
+                        match bytes.below(17) {
                             0..=2 => self.moving(|sim, diag| sim_step(sim, diag)),
                             3 => {
                                 let by = number(bytes, 0.1);
@@ -266,6 +266,10 @@ macro_rules! precision {
                                 self.wrong_handles();
                                 false
                             }
+                            15 => {
+                                self.linearize(bytes);
+                                false
+                            }
                             _ => {
                                 self.facts(bytes);
                                 false
@@ -309,6 +313,53 @@ macro_rules! precision {
                             assert!(out[..n].iter().all(|x| x.is_finite()));
                         }
                         assert!(out[n].is_nan() && before == self.seen(self.sim));
+                    }
+                }
+
+                /// Derivatives by any parameters, in memory between guards.
+                unsafe fn linearize(&self, bytes: &mut Bytes<'_>) {
+                    let (mut diag, mut req) = (zeroed::<nekton_diag>(), nekton_req::default());
+                    let count = bytes.below(4);
+                    let kinds = |bytes: &mut Bytes<'_>| nekton_parameter {
+                        kind: if bytes.chance(3) { bytes.kind(14) } else { 1 + bytes.below(12) as i32 },
+                        index: bytes.kind(4),
+                        component: bytes.kind(4),
+                        reserved: i32::from(bytes.below(16) == 0),
+                    };
+                    let parameters: Vec<_> = (0..count).map(|_| kinds(bytes)).collect();
+                    let (d, n) = (self.plan.state_len, self.plan.coordinates);
+                    let (mut a, mut b, mut bound) = (vec![R::NAN; d * d + 1], vec![R::NAN; d * count + 1], R::NAN);
+                    let (mut h, mut c) = (vec![R::NAN; n * n + 1], vec![R::NAN; n * n + 1]);
+                    let qdd: Vec<R> = (0..n).map(|_| number(bytes, 0.5)).collect();
+                    let (p, a_len, b_len) = (parameters.as_ptr(), d * d, d * count);
+                    // SAFETY: a live simulation; buffers are longer than said, or the call is refused.
+                    unsafe {
+                        let before = self.seen(self.sim);
+                        assert!(check_report(sim_derivatives_req(self.model, &mut req, &mut diag), &diag));
+                        let mut memory = Guarded::new(req.size);
+                        let (at, len, sim) = (memory.memory(), req.size, self.sim);
+                        let (pa, pb) = (a.as_mut_ptr(), b.as_mut_ptr());
+                        let known = sim_linearize(sim, p, count, pa, a_len, pb, b_len, &mut bound, at, len, &mut diag);
+                        if check_report(known, &diag) {
+                            assert!(a[..a_len].iter().chain(&b[..b_len]).all(|x| x.is_finite()) && bound >= 0.0);
+                        } else {
+                            assert!(bound.is_nan(), "refused and yet written");
+                            assert!(a.iter().chain(&b).all(|x| x.is_nan() || *x == 0.0), "half an answer");
+                        }
+                        let (ph, pc) = (h.as_mut_ptr(), c.as_mut_ptr());
+                        let known = sim_force_derivatives(sim, qdd.as_ptr(), n, ph, pc, at, len, &mut diag);
+                        if check_report(known, &diag) {
+                            assert!(h[..n * n].iter().chain(&c[..n * n]).all(|x| x.is_finite()));
+                        } else {
+                            assert!(h.iter().chain(&c).all(|x| x.is_nan() || *x == 0.0), "half an answer");
+                        }
+                        for short in [0, len - 1] {
+                            assert!(sim_force_derivatives(sim, qdd.as_ptr(), n, ph, pc, at, short, null_mut()) < 0);
+                        }
+                        let ends = [a[a_len], b[b_len], h[n * n], c[n * n]];
+                        assert!(ends.iter().all(|x| x.is_nan()), "wrote beyond the end");
+                        memory.check();
+                        assert!(before == self.seen(sim), "a question moved the simulation");
                     }
                 }
 
@@ -480,6 +531,9 @@ precision!(double, api64, f64, {
     sim_repulsion = nekton_sim_repulsion,
     sim_circulation_gradient = nekton_sim_circulation_gradient,
     sim_gyroscopic = nekton_sim_gyroscopic,
+    sim_derivatives_req = nekton_sim_derivatives_req,
+    sim_linearize = nekton_sim_linearize,
+    sim_force_derivatives = nekton_sim_force_derivatives,
     sim_energy = nekton_sim_energy,
     sim_energy_drift = nekton_sim_energy_drift,
     sim_impulse = nekton_sim_impulse,
@@ -529,6 +583,9 @@ precision!(single, api32, f32, {
     sim_repulsion = nekton32_sim_repulsion,
     sim_circulation_gradient = nekton32_sim_circulation_gradient,
     sim_gyroscopic = nekton32_sim_gyroscopic,
+    sim_derivatives_req = nekton32_sim_derivatives_req,
+    sim_linearize = nekton32_sim_linearize,
+    sim_force_derivatives = nekton32_sim_force_derivatives,
     sim_energy = nekton32_sim_energy,
     sim_energy_drift = nekton32_sim_energy_drift,
     sim_impulse = nekton32_sim_impulse,

@@ -75,6 +75,9 @@ template <class R> struct Api;
         static constexpr auto sim_repulsion = &P##_sim_repulsion;                                                              \
         static constexpr auto sim_circulation_gradient = &P##_sim_circulation_gradient;                                        \
         static constexpr auto sim_gyroscopic = &P##_sim_gyroscopic;                                                            \
+        static constexpr auto sim_derivatives_req = &P##_sim_derivatives_req;                                                  \
+        static constexpr auto sim_linearize = &P##_sim_linearize;                                                              \
+        static constexpr auto sim_force_derivatives = &P##_sim_force_derivatives;                                              \
         static constexpr auto sim_energy = &P##_sim_energy;                                                                    \
         static constexpr auto sim_energy_drift = &P##_sim_energy_drift;                                                        \
         static constexpr auto sim_impulse = &P##_sim_impulse;                                                                  \

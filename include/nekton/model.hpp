@@ -87,6 +87,11 @@ public:
     {
         return detail::done(Api::model_outline_point(model_, &place, t, out.data()));
     }
+    /** Memory that linearize and force_derivatives of its simulations need. */
+    nekton_status derivatives_req(nekton_req &out, nekton_diag *diag = nullptr) const
+    {
+        return detail::call(diag, [&](nekton_diag *d) { return Api::sim_derivatives_req(model_, &out, d); });
+    }
 
 private:
     typename Api::Model *model_ = nullptr;

@@ -180,6 +180,28 @@ public:
         return fill(Api::sim_christoffel_tensor, out, diag);
     }
 
+    /** Derivatives of dy/dt by the state, a (d x d for d = plan().state_len), and by parameters, b (d x their number), column by
+     *  column, and a bound of their relative error in space. Memory: see BasicModel::derivatives_req. */
+    nekton_status linearize(Span<const nekton_parameter> parameters, Span<R> a, Span<R> b, R &bound, void *memory,
+                            std::size_t size, nekton_diag *diag = nullptr)
+    {
+        return detail::call(diag, [&](nekton_diag *d) {
+            return Api::sim_linearize(sim_, parameters.data(), parameters.size(), a.data(), a.size(), b.data(), b.size(),
+                                      &bound, memory, size, d);
+        });
+    }
+    /** Derivatives of the links' force by positions and by velocities for given accelerations (3 per link), square matrices. */
+    nekton_status force_derivatives(Span<const R> qdd, Span<R> position, Span<R> velocity, void *memory, std::size_t size,
+                                    nekton_diag *diag = nullptr)
+    {
+        const std::size_t n = qdd.size();
+        // C has no lengths of the matrices.
+        const std::size_t given = position.size() == velocity.size() ? position.size() : 0;
+        return two(given, n * n, diag, [&](nekton_diag *d) {
+            return Api::sim_force_derivatives(sim_, qdd.data(), n, position.data(), velocity.data(), memory, size, d);
+        });
+    }
+
     /** Energies at the state shown. */
     nekton_status energy(typename Api::Energy &out, nekton_diag *diag = nullptr)
     {

@@ -5,6 +5,7 @@
 #include "objects.h"
 #include "outputs.h"
 
+#include <math.h>
 #include <string.h>
 
 static void joint_values(call *c)
@@ -140,7 +141,41 @@ static void repulsion(call *c) { quantity(c, nekton_sim_repulsion, false); }
 static void circulation(call *c) { quantity(c, nekton_sim_circulation_gradient, false); }
 static void gyroscopic(call *c) { quantity(c, nekton_sim_gyroscopic, true); }
 
+/* A, B and the bound; the parameters are rows (kind, number of the link or joint from 1, component from 1; 0: none). */
+static void linearize(call *c)
+{
+    object *o = get(c->prhs[0]);
+    nekton_diag diag;
+    nekton_req req;
+    double bound = 0;
+    size_t d = o->plan.state_len, n = is_real(c->prhs[1]) ? (size_t)mxGetM(c->prhs[1]) : 0;
+    const double *x = matrix(c->prhs[1], 3, "parameters");
+    for (size_t i = 0; i < 3 * n; i++) {
+        if (x[i] < 0 || x[i] > 1e9 || x[i] != floor(x[i])) {
+            mexErrMsgIdAndTxt("nekton:arg:range", "parameters must be whole numbers, not %g", x[i]);
+        }
+    }
+    check(nekton_sim_derivatives_req(o->model, &req, &diag), &diag, "sim");
+    nekton_parameter *parameters = mxCalloc(n + 1, sizeof *parameters);
+    for (size_t k = 0; k < n; k++) {
+        parameters[k].kind = (int32_t)x[k];
+        parameters[k].index = (int32_t)x[k + n] - 1;
+        parameters[k].component = x[k + 2 * n] > 0 ? (int32_t)x[k + 2 * n] - 1 : 0;
+    }
+    void *mem = mxCalloc(req.size + 1, 1);
+    mxArray *a = mxCreateDoubleMatrix((mwSize)d, (mwSize)d, mxREAL), *b = mxCreateDoubleMatrix((mwSize)d, (mwSize)n, mxREAL);
+    nekton_status status = nekton_sim_linearize(o->sim, parameters, n, mxGetPr(a), d * d, mxGetPr(b), d * n, &bound, mem,
+                                                req.size, &diag);
+    mxFree(mem);
+    mxFree(parameters);
+    check(status, &diag, "sim");
+    c->plhs[0] = a;
+    if (c->nlhs > 1) c->plhs[1] = b;
+    if (c->nlhs > 2) c->plhs[2] = mxCreateDoubleScalar(bound);
+}
+
 const command quantity_commands[] = {
+    {"linearize", linearize, 2, 2, 3},
     {"positions", positions, 1, 1, 1},
     {"velocities", velocities, 1, 1, 1},
     {"joint_values", joint_values, 1, 1, 2},

@@ -4,7 +4,9 @@
 use crate::{adams, body, hinged, link, simulation, wall};
 use nekton::scene::{Body, Drive, Harmonic, Link, Scene, Shape, Signal};
 use nekton::status::Result;
-use nekton::{Formulation, Method, Sim};
+use nekton::{Formulation, Method, Parameter, Sim};
+
+mod lqr;
 
 /// One line of output: the numbers in it.
 pub type Lines = Vec<Vec<f64>>;
@@ -19,7 +21,9 @@ pub fn lines(example: &str) -> Option<Lines> {
         "swimmer_closed_loop" => closed_loop(),
         "own_integrator" => own_integrator(),
         "parallel_rollouts" => rollouts(),
+        "lqr" => lqr::lines(),
         "fish" => fish(),
+        "coasting" => coasting(),
         _ => return None,
     }
     .ok()
@@ -207,4 +211,16 @@ fn fish() -> Result<Lines> {
     let mut sim = sim.view();
     sim.advance(1.0)?;
     Ok(vec![sim.positions()[..3].to_vec()])
+}
+
+/// The README's linearization.
+fn coasting() -> Result<Lines> {
+    let links = [ellipse(1.0, 0.4, 1.0, 0)];
+    let bodies = [body(&links, [0.0; 3], [0.5, 0.0, 0.0])];
+    let mut sim = simulation(&of(&bodies), adams(1e-9));
+    let mut sim = sim.view();
+    let mut memory = vec![0.0; Sim::derivative_requirement(&sim.model())?];
+    let (mut a, mut b) = ([0.0; 36], [0.0; 6]);
+    sim.linearize([Parameter::Wrench(0, 2)], &mut a, &mut b, &mut memory)?;
+    Ok(vec![vec![a[5 + 6 * 2], b[5]]])
 }

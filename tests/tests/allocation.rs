@@ -5,7 +5,7 @@
 use nekton::BoundaryRecord;
 use nekton::scene::{Drive, Harmonic, Link, Repulsion, Scene, Shape, Signal, Wall};
 use nekton::{CoordinateRecord, LinkRecord};
-use nekton::{Formulation, Method, Model, ModelMemory, Result, Sim, Status};
+use nekton::{Formulation, Method, Model, ModelMemory, Parameter, Result, Sim, Status};
 use nekton_tests::*;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -74,16 +74,26 @@ fn nothing_is_allocated_while_stepping() {
     let still = swimmer.map(|link| Link { circulation: 0.0, ..link });
     let swimmer_alone = [body(&still, [0.0; 3], [0.0; 3])];
     let body_alone = [body(&star, [0.0; 3], [0.1, 0.2, 0.3])];
+    // Circulation has no derivatives.
+    let without = [body(&still, [0.3, -0.8, 0.3], [0.0; 3]), both[1]];
+    let walls = [wall(disc(0.3), [1.4, 0.8], 0.0, 32)];
     let scenes = [
-        everything,
-        Scene { bodies: &swimmer_alone, ..Scene::new(1.0, 0.0) },
-        Scene { bodies: &body_alone, ..Scene::new(1.0, 0.5) },
+        (everything, true),
+        (Scene { bodies: &without, obstacles: &walls, ..everything }, false),
+        (Scene { bodies: &swimmer_alone, ..Scene::new(1.0, 0.0) }, false),
+        (Scene { bodies: &body_alone, ..Scene::new(1.0, 0.5) }, false),
     ];
-    for scene in scenes {
+    for (scene, circulation) in scenes {
         for method in [Method::Rk4 { step: 0.02 }, Method::Abm4 { step: 0.02 }, adams(1e-6)] {
             let mut sim = simulation(&scene, method);
             let joints = sim.view().model().joint_count();
             let (mut u, mut du) = (vec![0.0; joints], vec![0.0; joints]);
+            let (rows, n) = (sim.view().state().len(), sim.view().positions().len());
+            let mut memory = vec![0.0; Sim::derivative_requirement(&sim.view().model()).unwrap()];
+            let (mut a, mut b, qdd) = (vec![0.0; rows * rows], vec![0.0; 2 * rows], vec![0.1; n]);
+            let (mut position, mut velocity) = (vec![0.0; n * n], vec![0.0; n * n]);
+            let parameters = [Parameter::FluidDensity, Parameter::Mass(0)];
+            let expected = if circulation { Err(Status::Unsupported) } else { Ok(()) };
             let calls = allocations(|| {
                 let mut sim = sim.view();
                 for _ in 0..8 {
@@ -98,6 +108,10 @@ fn nothing_is_allocated_while_stepping() {
                 sim.joint_values(&mut u, &mut du);
                 sim.joint_torques(&mut u, &mut du).unwrap();
                 sim.resolution().unwrap();
+                let answer = sim.linearize(parameters, &mut a, &mut b, &mut memory).map(|_| ());
+                assert_eq!(answer.map_err(|e| e.status), expected);
+                let answer = sim.force_derivatives(&qdd, &mut position, &mut velocity, &mut memory);
+                assert_eq!(answer.map_err(|e| e.status), expected);
             });
             assert_eq!(calls, 0, "{method:?}");
         }

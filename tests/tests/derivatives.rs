@@ -6,6 +6,9 @@ use nekton::scene::{
 use nekton::{Parameter, Sim, SimBuf};
 use nekton_tests::*;
 
+mod closed_forms;
+mod untouched;
+
 /// Three links without any symmetry, as three bodies.
 fn links(nodes: usize) -> [[Link<'static, f64>; 1]; 3] {
     [

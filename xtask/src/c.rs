@@ -290,7 +290,13 @@ fn neighbours() -> Result<(), String> {
 
 /// The first block of a language in a Markdown file.
 fn block(file: &str, language: &str) -> Result<String, String> {
+    block_below("", file, language)
+}
+
+/// The same below a heading.
+fn block_below(heading: &str, file: &str, language: &str) -> Result<String, String> {
     let text = read(&root().join(file))?;
+    let (_, text) = text.split_once(heading).ok_or(format!("{file} has no {heading}"))?;
     let from = text.split_once(&format!("```{language}\n")).map(|(_, rest)| rest);
     let inside = from.and_then(|rest| rest.split_once("```")).map(|(inside, _)| inside.to_string());
     inside.ok_or(format!("{file} has no block of {language}"))
@@ -306,7 +312,10 @@ impl Moved {
         std::fs::create_dir_all(&place).map_err(|error| format!("{}: {error}", place.display()))?;
         let moved = Moved(place);
         ask(Command::new("cp").arg("-a").arg(prefix()).arg(moved.tree()))?;
-        std::fs::write(moved.0.join("fish.c"), block("README.md", "c")?).map_err(|error| error.to_string())?;
+        let coasting = block_below("## Linearize", "README.md", "c")?;
+        for (name, text) in [("fish.c", block("README.md", "c")?), ("coasting.c", coasting)] {
+            std::fs::write(moved.0.join(name), text).map_err(|error| error.to_string())?;
+        }
         Ok(moved)
     }
     fn tree(&self) -> PathBuf {
@@ -322,8 +331,12 @@ impl Drop for Moved {
 
 /// Runs the README's program and compares the six digits that it prints.
 fn fish(run: &mut Command) -> Result<(), String> {
+    six_digits("fish", run)
+}
+
+fn six_digits(name: &str, run: &mut Command) -> Result<(), String> {
     let digits = |lines: Lines| -> Vec<String> { lines.concat().iter().map(|x| format!("{x:.5e}")).collect() };
-    let expected = digits(lines("fish").ok_or("nothing is expected of the README's program")?);
+    let expected = digits(lines(name).ok_or("nothing is expected of the README's program")?);
     let printed = digits(numbers(&ask(run)?));
     if printed == expected { Ok(()) } else { Err(format!("{run:?} printed {printed:?}, expected {expected:?}")) }
 }
@@ -348,16 +361,19 @@ fn consumer_by_cmake() -> Result<(), String> {
 fn consumer_by_pkg_config() -> Result<(), String> {
     let moved = Moved::new("pkg-config")?;
     let lib = moved.tree().join("lib");
-    let compile = |line: &str| {
-        let line = format!("cc -std=c99 fish.c {line}");
+    let compile_one = |program: &str, line: &str| {
+        let line = format!("cc -std=c99 {program} {line}");
         let mut shell = Command::new("sh");
         shell.args(["-c", &line]).current_dir(&moved.0).env("PKG_CONFIG_PATH", lib.join("pkgconfig"));
         ask(&mut shell)
     };
+    let compile = |line: &str| compile_one("fish.c", line);
     compile("$(pkg-config --cflags --libs nekton) -o shared")?;
     compile("-static $(pkg-config --static --cflags --libs nekton) -o static")?;
     fish(Command::new(moved.0.join("shared")).env("LD_LIBRARY_PATH", &lib))?;
-    fish(&mut Command::new(moved.0.join("static")))
+    fish(&mut Command::new(moved.0.join("static")))?;
+    compile_one("coasting.c", "-static $(pkg-config --static --cflags --libs nekton) -o coasting")?;
+    six_digits("coasting", &mut Command::new(moved.0.join("coasting")))
 }
 
 /// Copy and paste.

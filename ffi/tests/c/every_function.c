@@ -179,6 +179,22 @@ int main(void) {
     print("gyroscopic", a, n * n);
     MUST(nekton_sim_christoffel_tensor(sim, a, n * n * n, &diag));
     print("christoffel_tensor", a, n * n * n);
+    static const nekton_parameter parameters[3] = {
+        {NEKTON_PARAMETER_FLUID_DENSITY, 0, 0, 0}, {NEKTON_PARAMETER_WRENCH, 1, 2, 0}, {NEKTON_PARAMETER_TORQUE, 1, 0, 0}};
+    real bound;
+    MUST(nekton_sim_derivatives_req(model, &req, &diag));
+    void *mem = malloc(req.size);
+    if (!mem) return 9;
+    MUST(nekton_sim_linearize(sim, parameters, 3, a, ns * ns, b, ns * 3, &bound, mem, req.size, &diag));
+    print("linearize_a", a, ns * ns);
+    print("linearize_b", b, ns * 3);
+    print("linearize_bound", &bound, 1);
+    real qdd[9];
+    MUST(nekton_sim_accelerations(sim, qdd, n, &diag));
+    MUST(nekton_sim_force_derivatives(sim, qdd, n, a, b, mem, req.size, &diag));
+    print("by_position", a, n * n);
+    print("by_velocity", b, n * n);
+    free(mem);
     nekton_energy energy;
     nekton_resolution resolution;
     nekton_time_error error;
