@@ -309,7 +309,7 @@ classdef Nekton < handle
         %     link1.force_x, link1.force_y, link1.torque      from outside, at the centre of mass
         %     joint1.torque, .stiffness, .damping, .rest      where a torque drives the joint; rest: unloaded value of its spring
         %     joint1.position, .rate, .acceleration           where its motion is given
-        %   Not with circulation (nekton:sim:Unsupported). With controls: of those in the control step that the time is in.
+        %   The force of circulation is differentiated by differences. With controls: of those in the control step that the time is in.
             if nargin < 2
                 names = {};
             end

@@ -42,12 +42,7 @@ catch problem
 end
 whirl = eggs();
 whirl.body(1).link.circulation = 0.5;
-raises('nekton:sim:Unsupported', @() linearized(whirl));
-end
-
-function linearized(scene)
-sim = Nekton(scene);
-sim.linearize();
+agrees(Nekton(whirl), {});
 end
 
 function agrees(sim, names)
