@@ -37,7 +37,7 @@ impl<R: Real> Sim<'_, R> {
     /// (3n, world): `position` = ∂r/∂q and `velocity` = ∂r/∂q̇, 3n × 3n each, column-major, in N, kg/s and so on per unit of the
     /// coordinates. F is everything but inertia: the Christoffel force (2.15), weight and buoyancy (2.16), repulsion (5.1); not the
     /// forces of joints. Exact derivatives of the discrete force with nodes that stay where they are in their outlines. `memory`:
-    /// [`Sim::derivative_requirement`]. The simulation does not change. About the price of one evaluation, and of one more if nothing was
+    /// [`Sim::derivative_requirement`]. The simulation does not change. The price of two to three evaluations, and of one more if nothing was
     /// asked at this state.
     ///
     /// # Errors
@@ -81,7 +81,7 @@ impl<R: Real> Sim<'_, R> {
     /// The linearization of ẏ = f(t, y, θ) at the state shown, y as [`Sim::state`] gives it (d reals): `a` = ∂f/∂y, d × d, and `b` = ∂f/∂θ,
     /// d × `parameters.len()`, column-major. Derivatives of the discrete right-hand side [`Sim::rhs`], of the work of the drives too,
     /// with nodes that stay where they are in their outlines. `memory`: [`Sim::derivative_requirement`]. The simulation does not change:
-    /// a run goes on by the same bits. The price of about one more evaluation, and O(n³) for n links.
+    /// a run goes on by the same bits. The price of two to three evaluations more, and O(n³) for n links.
     ///
     /// # Errors
     /// `Length`, `MemoryTooSmall`; `OutOfRange` with the name of a parameter that the model does not have; `Unsupported` as

@@ -7,8 +7,8 @@
 //!
 //! S = A⁻¹ c, Z = A⁻¹ W U, T = A⁻¹ (Im d²G[b, q̇] u + Im dG[b] w + W S), and per unit density
 //! M_v = sym Bᵀ Z, P = ½ (Bᵀ S + Uᵀ r), Q = ½ (Bᵀ T + Uᵀ r″ + Zᵀ r), Y = λᵀ Im d²G u + rᵀ S + Sᵀ r;
-//! `frames` adds the turning of the links. One pass over the pairs, three sets of 3n solves, 6n products with W: about the price
-//! of one more evaluation, however many bodies there are.
+//! `frames` adds the turning of the links. One pass over the pairs, three sets of 3n solves, 6n products with W: the price
+//! of two to three more evaluations, however many bodies there are.
 //!
 //! Tested by `tests/derivatives`.
 
