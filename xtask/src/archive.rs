@@ -29,7 +29,7 @@ pub struct Machine {
 
 /// This computer, without its operating system; with every feature, so that the proofs are about all code.
 pub const HERE: Machine =
-    Machine { folder: "freestanding", target: None, tools: "", format: FORMAT, features: "near,implicit" };
+    Machine { folder: "freestanding", target: None, tools: "", format: FORMAT, features: "near,implicit,derivatives" };
 const FORMAT: &str = if cfg!(target_arch = "aarch64") { "elf64-littleaarch64" } else { "elf64-x86-64" };
 
 impl Machine {
