@@ -186,19 +186,23 @@ impl<R: Real> Task for Inner<'_, R> {
     }
 }
 
-/// Three scalar products with one vector.
+/// Three scalar products with one vector. Chunks are arrays: of another length the compiler would not know that it is not 0.
 #[inline(always)]
 fn three_products<R: Real>(columns: [&[R]; 3], r: &[R]) -> [R; 3] {
     let mut sums = [[R::zero(); LANES]; 3];
-    let [x, y, z] = columns.map(|column| column.chunks(LANES));
-    for (r, (x, (y, z))) in r.chunks(LANES).zip(x.zip(y.zip(z))) {
-        let r = lanes(r, R::zero());
-        for (sum, column) in sums.iter_mut().zip([x, y, z]) {
-            let column = lanes(column, R::zero());
+    let ([x, y, z], (r, r_rest)) = (columns.map(|column| column.as_chunks::<LANES>()), r.as_chunks::<LANES>());
+    let mut take = |columns: [[R; LANES]; 3], r: [R; LANES]| {
+        for (sum, column) in sums.iter_mut().zip(columns) {
             for ((s, c), r) in sum.iter_mut().zip(column).zip(r) {
                 *s += c * r;
             }
         }
+    };
+    for (r, (x, (y, z))) in r.iter().zip(x.0.iter().zip(y.0.iter().zip(z.0))) {
+        take([*x, *y, *z], *r);
+    }
+    if !r_rest.is_empty() {
+        take([x.1, y.1, z.1].map(|rest| lanes(rest, R::zero())), lanes(r_rest, R::zero()));
     }
     sums.map(sum_of)
 }
