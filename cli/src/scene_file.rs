@@ -97,6 +97,11 @@ impl SceneFile {
         self.shapes().map(|(whose, place, shape)| (whose, place, shape.told()))
     }
 
+    /// What smoothing may have changed the added mass of a boundary by.
+    pub fn smoothing(&self, place: Place) -> Option<f64> {
+        self.shape(place).and_then(ShapeDef::smoothing)
+    }
+
     fn shapes(&self) -> impl Iterator<Item = (String, Place, &ShapeDef)> {
         let links = self.bodies.iter().enumerate().flat_map(|(b, body)| {
             let place = move |l| Place::Link(b, body.core_index(l));

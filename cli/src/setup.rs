@@ -143,19 +143,23 @@ impl Setup {
 
     /// Whose outlines are given by points, what was read of them, and how well these tell them.
     pub fn outlines(&self) -> Vec<(String, String)> {
-        let view = self.model.view();
         let line = |(whose, place, told): (String, Place, Option<String>)| {
-            let known = view.outline_error(place).map(|e| format!("its points tell it to about {}", percent(e)));
+            let known = self.outline_error(place).map(|e| format!("its points tell it to about {}", percent(e)));
             let all: Vec<String> = told.into_iter().chain(known).collect();
             (!all.is_empty()).then(|| (whose, all.join("; ")))
         };
         self.scene.outlines().filter_map(line).collect()
     }
 
+    /// How well points tell an outline: the core's estimate, or what smoothing may have changed if that is more.
+    fn outline_error(&self, place: Place) -> Option<f64> {
+        let known = self.model.view().outline_error(place)?;
+        Some(self.scene.smoothing(place).map_or(known, |smoothing| known.max(smoothing)))
+    }
+
     /// The estimated errors of outlines given by points, with whose they are.
     pub fn outline_errors(&self) -> impl Iterator<Item = (String, f64)> {
-        let view = self.model.view();
-        self.scene.outlines().filter_map(move |(whose, place, _)| Some((whose, view.outline_error(place)?)))
+        self.scene.outlines().filter_map(move |(whose, place, _)| Some((whose, self.outline_error(place)?)))
     }
 
     /// What set-up mended, and what the user should know of tables and channels.
@@ -172,6 +176,15 @@ impl Setup {
                 other => format!("{name}: {}", other.text()),
             }
         });
-        mended.chain(self.scene.notices()).collect()
+        let asked = view.plan().tolerance;
+        let smoothed = self.scene.outlines().filter_map(|(whose, place, _)| {
+            let error = self.scene.smoothing(place).filter(|e| *e > asked)?;
+            Some(format!(
+                "{whose}: smoothing may have changed its added mass by up to about {}, which no bound contains: less where its points scatter \
+                 independently, as much where they are rounded or `smooth` is more than their scatter takes",
+                percent(error)
+            ))
+        });
+        mended.chain(smoothed).chain(self.scene.notices()).collect()
     }
 }

@@ -171,7 +171,9 @@ impl ShapeDef {
     /// What would help against scatter that matters.
     pub fn scatter(&self) -> Option<String> {
         let ShapeDef::Curve(outline, _) = self else { return None };
-        let noise = outline.noise.filter(|n| n.matters)?;
+        // Below the digits of the points their differences tell nothing.
+        let size = outline.points.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let noise = outline.noise.filter(|n| n.matters && n.sigma > 1e-12 * size)?;
         let distance = noise.distance(outline.points.len());
         Some(format!(
             "its points scatter by about {:.0e} m across it: `smooth = {distance:.1e}` beside `curve` fits one within that distance of them",
@@ -241,6 +243,12 @@ impl ShapeDef {
                  origin"
             )
         })
+    }
+
+    /// What smoothing may have changed the added mass by.
+    pub fn smoothing(&self) -> Option<f64> {
+        let ShapeDef::Curve(outline, _) = self else { return None };
+        outline.smoothing
     }
 
     /// What the user is told of points that the scene file does not show, and of points that scatter.

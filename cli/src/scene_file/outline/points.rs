@@ -20,6 +20,8 @@ pub struct Outline {
     pub corners: Option<Vec<usize>>,
     /// By how much the points scatter, if that is looked at and they are enough.
     pub noise: Option<Noise>,
+    /// What smoothing may have changed the added mass by, relatively, if it was asked for.
+    pub smoothing: Option<f64>,
 }
 
 impl Outline {
@@ -30,7 +32,7 @@ impl Outline {
 
     /// Points of which nothing is told.
     pub fn of(points: Vec<[f64; 2]>) -> Self {
-        Outline { points, told: None, corners: None, noise: None }
+        Outline { points, told: None, corners: None, noise: None, smoothing: None }
     }
 
     pub fn described(self, from: &str) -> Self {

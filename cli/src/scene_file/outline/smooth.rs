@@ -29,6 +29,10 @@ pub fn stands_out(points: &[[f64; 2]], k: usize, sigma: f64) -> bool {
     turn(points, k).to_radians() * least > STANDS_OUT * 6.0_f64.sqrt() * sigma
 }
 
+/// What points that were moved may change the added mass by, over their way (rms) and the outline's narrower extent. Scatter about a smooth
+/// outline leaves less, by up to the root of the number of points; points rounded to a grid, and tips that are cut off, leave as much.
+const MOVED: f64 = 10.0;
+
 impl Outline {
     /// The same with the points of the smoothest curve within a distance of them; or what is wrong, and what helps. Corners stay.
     pub fn smoothed(self, corners: &[usize], within: f64) -> Result<Self, (String, String)> {
@@ -81,7 +85,9 @@ impl Outline {
         let left = noise(&points, corners);
         let noise =
             left.map(|left| Noise { sigma: self.noise.map_or(left.sigma, |n| n.sigma.max(left.sigma)), ..left });
-        Ok(Outline { noise, points, told: Some(told), corners: self.corners })
+        let narrow = extent(given).into_iter().fold(f64::INFINITY, f64::min);
+        let smoothing = Some((MOVED * rms / narrow).min(1.0));
+        Ok(Outline { noise, points, told: Some(told), corners: self.corners, smoothing })
     }
 }
 
