@@ -161,7 +161,8 @@ impl SceneFile {
             Status::OutsideTank => Some("move it inside, or make the tank larger".to_owned()),
             Status::SelfIntersection => Some(self.shape(error.place).and_then(ShapeDef::far).unwrap_or_else(|| {
                 "list the points in order along the outline; a curve through uneven points may cross itself where the polygon does not, as \
-                 beside a long side without points: give it some, name its ends in `corners`, or write `polygon`"
+                 beside a long side without points: give it some, name its ends in `corners`, or write `polygon`; through points that \
+                 scatter it crosses itself too: `smooth = s` beside `curve`"
                     .to_owned()
             })),
             Status::NodeCount => Some("there are more than the core takes".to_owned()),
