@@ -231,18 +231,27 @@ fn integrate(
 /// On standard error, and only if that is a terminal.
 fn progress(duration: f64) -> ProgressBar {
     let bar = ProgressBar::new(PROGRESS);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg}   {elapsed}, {eta} to go") {
-        bar.set_style(style);
-    }
+    // How long it takes is known from the first row on.
+    set_style(&bar, "{bar:30} {msg}   {elapsed}");
     bar.set_message(format!("t = 0 of {duration} s"));
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
 
+fn set_style(bar: &ProgressBar, template: &str) {
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+}
+
 fn show(bar: &ProgressBar, duration: f64, row: &Row) {
     let gap = if row.gap.is_finite() { format!(", gap {:.3} m", row.gap) } else { String::new() };
     bar.set_message(format!("t = {:.3} of {duration} s{gap}", row.t));
-    bar.set_position((PROGRESS as f64 * row.t / duration) as u64);
+    let position = (PROGRESS as f64 * row.t / duration) as u64;
+    if bar.position() == 0 && position > 0 {
+        set_style(bar, "{bar:30} {msg}   {elapsed}, {eta} to go");
+    }
+    bar.set_position(position);
 }
 
 /// The present state and what follows from it, in the user's order; between what the smallest gap is.
